@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+
+namespace cairn {
+
+/// A file that appears whole or not at all: it is written beside its name and renamed by `commit()`.
+/// Without `commit()` nothing is left behind, and what stood there before stays.
+///
+/// @throws Error (Fault::usage) when the folder is missing or not writable, (Fault::memory) when the disk is full.
+class OutputFile {
+public:
+    explicit OutputFile(std::filesystem::path path);
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    OutputFile(OutputFile&&) = delete;
+    OutputFile& operator=(OutputFile&&) = delete;
+    ~OutputFile();
+
+    void write(const void* data, std::size_t size_bytes);
+    void commit();
+
+private:
+    std::filesystem::path path_;
+    std::filesystem::path temporary_;
+    std::FILE* file_ = nullptr;
+};
+
+}  // namespace cairn

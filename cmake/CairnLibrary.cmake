@@ -1,0 +1,28 @@
+# cairn_library(NAME SOURCES a.cpp b.h ... [PUBLIC targets ...] [PRIVATE targets ...])
+#
+# One static library a folder: cairn_NAME, called cairn::NAME by those who link it.
+# Headers are included from the project's root ("voxelizer/grid.h"), here and after installation alike.
+function(cairn_options target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+  # The lattice of the voxelizer is defined by IEEE operations done one by one: a fused multiply-add rounds otherwise.
+  target_compile_options(${target} PRIVATE -ffp-contract=off)
+  if(CAIRN_SANITIZE)
+    target_compile_options(${target} PUBLIC -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()
+
+function(cairn_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target cairn_${name})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(cairn::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/cairn>)
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  cairn_options(${target})
+  set_property(GLOBAL APPEND PROPERTY CAIRN_LIBRARIES ${target})
+endfunction()

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "scenes/scene.h"
+
+namespace cairn::scenes {
+
+struct Builtin {
+    std::string_view name;
+    std::string_view description;
+};
+
+/// The scenes that need no file: "knot" (trefoil tube, 52,992 triangles), "spheres" (9 x 9 spheres, about 6.8k),
+/// "tree" (about 600k), "tree-leaves" (the same with alpha-masked leaf cards), "cornell" (the Cornell box).
+/// The first three stand for the test scenes of Forest et al. 2009, Figure 5.
+[[nodiscard]] std::span<const Builtin> builtins();
+
+/// @throws Error (Fault::usage) that lists the names when there is none of that name.
+[[nodiscard]] Scene make_builtin(std::string_view name);
+
+}  // namespace cairn::scenes

@@ -1,0 +1,178 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+/// A glTF 2.0 scene in memory, as its file shares it: meshes once, nodes and instances referring to them.
+///
+/// Units are the file's (metres by glTF's rule), right-handed, +Y up. Indices into the vectors of `Scene` are ints,
+/// -1 = none; the loader has checked them all, so they never need checking again.
+namespace cairn::scenes {
+
+/// How a texture coordinate outside [0, 1] is brought back (glTF 2.0, sampler.wrapS and wrapT).
+enum class Wrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
+
+/// 8-bit RGBA texels, row 0 at the top (v = 0), sRGB-encoded colour, linear alpha.
+struct Image {
+    std::string name;
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> rgba;  ///< 4 * width * height
+};
+
+/// A base-colour texture: an image and how it is addressed.
+struct Texture {
+    int image = -1;  ///< into Scene::images
+    Wrap wrap_s = Wrap::repeat;
+    Wrap wrap_t = Wrap::repeat;
+};
+
+enum class AlphaMode : std::uint8_t {
+    opaque,
+    mask,  ///< a texel whose alpha is under the cutoff is a hole in the surface
+    blend, ///< counts as surface
+};
+
+struct Material {
+    std::string name;
+    glm::vec4 base_color{1.0F};  ///< linear
+    int texture = -1;            ///< into Scene::textures
+    /// texture coordinate = uv_from_mesh * (u, v, 1): KHR_texture_transform, identity without it.
+    glm::mat3 uv_from_mesh{1.0F};
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5F;
+    bool double_sided = false;
+};
+
+enum class Topology : std::uint8_t { points, lines, triangles };
+
+struct MorphTarget {
+    std::vector<glm::vec3> positions;  ///< a displacement for each vertex, or empty
+    std::vector<glm::vec3> normals;    ///< the same, or empty
+};
+
+struct SkinWeights {
+    glm::u16vec4 joints;  ///< into Skin::joints
+    glm::vec4 weights;    ///< sum 1 (normalized when loaded), or all 0
+};
+
+/// Vertices and what they span. Strips, fans and loops are unrolled and missing indices written out when loaded, so
+/// `indices` always holds 1, 2 or 3 entries a point, line or triangle. An optional attribute is empty when the file
+/// has none, else it has one entry a vertex.
+struct Primitive {
+    Topology topology = Topology::triangles;
+    int material = -1;  ///< into Scene::materials; -1: white, opaque
+    std::vector<std::uint32_t> indices;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec2> texcoords;  ///< the set that the material's base colour texture uses, before uv_from_mesh
+    std::vector<glm::u8vec4> colors;   ///< COLOR_0: linear RGBA, 255 = 1
+    std::vector<SkinWeights> skin;
+    std::vector<MorphTarget> morph_targets;
+
+    [[nodiscard]] std::size_t element_count() const {
+        return indices.size() / (topology == Topology::triangles ? 3 : topology == Topology::lines ? 2 : 1);
+    }
+};
+
+struct Mesh {
+    std::string name;
+    std::vector<Primitive> primitives;
+    std::vector<float> morph_weights;  ///< defaults; one for each morph target of its primitives
+};
+
+/// Translation, rotation, scale: applied scale first.
+struct Trs {
+    glm::dvec3 translation{0.0};
+    glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
+    glm::dvec3 scale{1.0};
+};
+
+struct Node {
+    std::string name;
+    std::vector<int> children;
+    Trs trs;                     ///< used when `matrix` is null
+    std::unique_ptr<glm::dmat4> matrix;
+    int mesh = -1;
+    int skin = -1;
+    int camera = -1;
+    int light = -1;
+    std::vector<Trs> instances;  ///< EXT_mesh_gpu_instancing: the mesh is drawn once for each; empty: once, in place
+    std::vector<float> morph_weights;  ///< overrides the mesh's when not empty
+};
+
+struct Skin {
+    std::vector<int> joints;                    ///< nodes
+    std::vector<glm::dmat4> joint_from_mesh;    ///< inverse bind matrices, one a joint
+};
+
+enum class Path : std::uint8_t { translation, rotation, scale, weights };
+enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
+
+/// Key frames of one property of one node. `values` holds `width` floats a key (3, 4, or the count of morph targets);
+/// for cubic_spline three times that: in-tangent, value, out-tangent.
+struct Channel {
+    int node = -1;
+    Path path = Path::translation;
+    Interpolation interpolation = Interpolation::linear;
+    int width = 3;
+    std::vector<float> times;  ///< seconds, strictly increasing
+    std::vector<float> values;
+};
+
+struct Animation {
+    std::string name;
+    std::vector<Channel> channels;
+    double duration = 0.0;  ///< seconds: the last key of any channel
+};
+
+/// glTF camera; looks along -Z of its node.
+struct Camera {
+    std::string name;
+    bool perspective = true;
+    double yfov = 0.8;         ///< radians, perspective only
+    double ymag = 1.0;         ///< half height, orthographic only
+    double znear = 0.01;
+    double zfar = 0.0;         ///< 0 = infinite
+};
+
+/// KHR_lights_punctual; shines along -Z of its node.
+struct Light {
+    enum class Type : std::uint8_t { directional, point, spot };
+    std::string name;
+    Type type = Type::point;
+    glm::vec3 color{1.0F};
+    float intensity = 1.0F;
+    float range = 0.0F;  ///< 0 = infinite
+    float inner_cone = 0.0F;
+    float outer_cone = 0.785398F;
+};
+
+struct SceneRoots {
+    std::string name;
+    std::vector<int> nodes;
+};
+
+struct Scene {
+    std::string name;  ///< file name or "builtin:NAME", for messages
+    std::vector<Image> images;
+    std::vector<Texture> textures;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Node> nodes;  ///< a forest: no node is its own ancestor
+    std::vector<Skin> skins;
+    std::vector<Animation> animations;
+    std::vector<Camera> cameras;
+    std::vector<Light> lights;
+    std::vector<SceneRoots> scenes;  ///< at least one
+    int default_scene = 0;
+    std::vector<std::string> warnings;  ///< once each: optional extensions that are not supported, and the like
+};
+
+}  // namespace cairn::scenes

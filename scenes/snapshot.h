@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "scenes/scene.h"
+
+namespace cairn::scenes {
+
+/// An axis-aligned box in world space; empty when low > high.
+struct Bounds {
+    glm::dvec3 low{1e300};
+    glm::dvec3 high{-1e300};
+
+    void add(const glm::dvec3& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    [[nodiscard]] bool empty() const { return low.x > high.x; }
+};
+
+/// One mesh primitive at one place. What is shared stays shared: the spans point into the Scene, or into the Snapshot
+/// where a skin or morph targets moved the vertices.
+struct Item {
+    const Primitive* primitive = nullptr;
+    std::span<const glm::vec3> positions;  ///< mesh space; one a vertex
+    std::span<const glm::vec3> normals;    ///< mesh space; empty when the file has none
+    glm::dmat4 world_from_mesh{1.0};
+};
+
+struct PlacedLight {
+    Light light;
+    glm::dmat4 world_from_light{1.0};
+};
+struct PlacedCamera {
+    Camera camera;
+    glm::dmat4 world_from_camera{1.0};
+};
+
+struct When {
+    double seconds = 0.0;           ///< clamped to each channel's keys, as glTF asks
+    std::optional<int> animation;   ///< none: the rest pose
+    std::optional<int> scene_index; ///< none: the file's default scene
+};
+
+/// One scene of a file at one moment: what stands where.
+struct Snapshot {
+    std::vector<Item> items;
+    std::vector<PlacedLight> lights;
+    std::vector<PlacedCamera> cameras;
+    Bounds bounds;  ///< exact bounds of all vertices that a primitive uses, in world space
+    std::uint64_t triangle_count = 0;
+    std::uint64_t line_count = 0;
+    std::uint64_t point_count = 0;
+
+    /// Vertices that skins or morph targets moved; `items` point in here.
+    std::vector<std::vector<glm::vec3>> deformed;
+};
+
+/// Evaluates animation, morph targets and skins at one moment. The scene must outlive the snapshot.
+///
+/// @throws Error  Fault::usage when the animation or the scene index does not exist; Fault::input when a transform
+///                gives a vertex that is not finite.
+[[nodiscard]] Snapshot take_snapshot(const Scene& scene, const When& when = {});
+
+}  // namespace cairn::scenes

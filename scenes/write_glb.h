@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "scenes/scene.h"
+
+namespace cairn::scenes {
+
+/// Writes the rest pose of a scene as a .glb file that glTF validators accept: nodes, meshes, materials and base-colour
+/// textures (PNG), lights and cameras. Skins, morph targets and animations are not written.
+/// @throws Error when the file cannot be written, or when the scene passes the 4 GiB that a .glb can hold.
+void write_glb(const Scene& scene, const std::filesystem::path& path);
+
+}  // namespace cairn::scenes
