@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gl/debug.h"
+
+namespace cairn::gl {
+
+enum class ContextKind {
+    automatic,  ///< EGL where it offers hardware, else OSMesa, else EGL's software driver
+    osmesa,     ///< Mesa's off-screen software rasterizer
+    egl,        ///< no window: a device, or Mesa's surfaceless platform
+};
+
+struct ContextOptions {
+    ContextKind kind = ContextKind::automatic;
+    bool debug = false;  ///< KHR_debug on: `Context::debug_log` gathers errors and undefined behaviour
+};
+
+/// An OpenGL 4.5 core context with no window. Current on the thread that made it until it is destroyed.
+///
+/// OSMesa and EGL are opened with dlopen when asked for, so one binary runs where either is absent.
+class Context {
+public:
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+    Context(Context&&) = delete;
+    Context& operator=(Context&&) = delete;
+    virtual ~Context() = default;
+
+    virtual void make_current() = 0;
+
+    /// "osmesa", "egl", "glfw".
+    [[nodiscard]] virtual std::string_view backend() const = 0;
+    [[nodiscard]] DebugLog& debug_log() { return *debug_log_; }
+
+protected:
+    Context() = default;
+    /// Loads the OpenGL functions and checks the version. @throws Error (Fault::context) naming the driver.
+    void load_functions(void* (*get_proc_address)(const char*), bool debug);
+
+private:
+    std::unique_ptr<DebugLog> debug_log_ = std::make_unique<DebugLog>();
+};
+
+/// @throws Error  Fault::context: nothing offers OpenGL 4.5; the message says what was tried and what each offers.
+[[nodiscard]] std::unique_ptr<Context> create_context(const ContextOptions& options = {});
+
+/// GL_RENDERER and the version of the current context: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core Profile) Mesa 22.3.6".
+[[nodiscard]] std::string driver_name();
+
+/// True when the current context rasterizes on the CPU: its times say nothing about a GPU.
+[[nodiscard]] bool is_software_driver();
+
+}  // namespace cairn::gl

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <memory>
+
+#include "gl/context.h"
+
+namespace cairn::gl {
+
+/// Each throws Error (Fault::context) where its library is absent or offers no OpenGL 4.5.
+[[nodiscard]] std::unique_ptr<Context> create_osmesa_context(bool debug);
+[[nodiscard]] std::unique_ptr<Context> create_egl_context(bool debug);
+
+}  // namespace cairn::gl

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "gl/buffer.h"
+#include "scenes/snapshot.h"
+#include "shaders/interop/types.h"
+#include "voxelizer/grid.h"
+
+namespace cairn::voxelizer {
+
+/// At most SURFACE_CHUNK_TRIANGLES triangles and the vertices they use.
+struct SurfaceChunk {
+    std::vector<std::array<std::int32_t, 3>> positions;       ///< lattice units, within [-2^24, 2^25]
+    std::vector<interop::SurfaceTriangle> triangles;
+    std::vector<interop::SurfaceAttributes> attributes;       ///< one a vertex, or empty (SurfaceOptions::attributes)
+};
+
+/// A triangle that reaches further than 2^24 units past the root cube, whose products pass 53 bits.
+/// Only an explicit --bounds makes them; they are voxelized on the CPU, as exactly.
+struct FarTriangle {
+    std::array<glm::i64vec3, 3> positions;
+    std::array<glm::vec2, 3> texcoords;
+    std::array<std::uint32_t, 3> colors;
+    std::uint32_t material;
+};
+
+/// The triangles of a snapshot on the lattice of a grid: what every voxelization method, the exact reference and the
+/// brick producer share, so that they speak of the same triangles. Segments and points are degenerate triangles.
+/// Triangles whose bounding box misses the root cube, and masked ones that no texel can show, are left out.
+struct Surface {
+    Grid grid;
+    std::vector<SurfaceChunk> chunks;
+    std::vector<FarTriangle> far_triangles;
+    std::vector<interop::SurfaceMaterial> materials;  ///< at least one
+    std::vector<std::uint32_t> texels;                ///< RGBA8 of the base-colour images that are used
+    std::uint64_t triangle_count = 0;
+    bool has_color = false;   ///< any base colour other than opaque white: factor, texture or vertex colour
+    bool has_mask = false;    ///< any alpha-masked material
+};
+
+struct SurfaceOptions {
+    bool attributes = false;  ///< normals, colours and texture coordinates too (the brick producer needs them)
+};
+
+/// @throws Error  Fault::memory when it would not fit in memory; Fault::input past the lattice's limits.
+[[nodiscard]] Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const Grid& grid,
+                                    const SurfaceOptions& options = {});
+
+/// A surface in the driver's memory.
+struct GpuSurfaceChunk {
+    gl::Buffer positions;
+    gl::Buffer triangles;
+    gl::Buffer attributes;
+    std::uint32_t triangle_count = 0;
+};
+struct GpuSurface {
+    std::vector<GpuSurfaceChunk> chunks;
+    std::vector<FarTriangle> far_triangles;
+    gl::Buffer materials;
+    gl::Buffer texels;
+    bool has_color = false;
+    bool has_mask = false;
+
+    /// Binds SSBO_SURFACE_* for one chunk.
+    void bind(std::size_t chunk) const;
+    [[nodiscard]] std::size_t size_bytes() const;
+};
+
+[[nodiscard]] GpuSurface upload(const Surface& surface);
+
+}  // namespace cairn::voxelizer

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "gl/buffer.h"
+#include "gl/program.h"
+#include "gl/timer.h"
+#include "voxelizer/bit_grid.h"
+#include "voxelizer/grid.h"
+#include "voxelizer/surface.h"
+
+namespace cairn::voxelizer {
+
+/// Marks every voxel whose closed box meets a triangle of the surface: never one fewer, never one more, the same bits
+/// on every driver. Runs on the GPU; needs the current context of its construction.
+///
+/// Separating axes: Akenine-Möller 2001; row spans: Schwarz and Seidel 2010, section 3.
+class Voxelizer {
+public:
+    explicit Voxelizer(const gl::ShaderSource& shaders = {});
+
+    /// @param subset  global triangle numbers, or none for all. Must hold every triangle that meets the region for the
+    ///                bits to be right; others cost time only.
+    /// @throws Error  Fault::memory when the region's bits pass the driver's shader-storage limit: the message says
+    ///                what would fit.
+    [[nodiscard]] BitGrid voxelize(const GpuSurface& surface, const Region& region,
+                                   std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
+
+    /// The same with all coarser levels, both computed on the GPU.
+    [[nodiscard]] BitmaskPyramid voxelize_pyramid(const GpuSurface& surface, const Region& region,
+                                                  std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
+
+    /// The voxelization alone of the last call (no upload, no read-back, no pyramid), on the driver's clock.
+    [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
+
+private:
+    double last_milliseconds_ = 0.0;
+};
+
+}  // namespace cairn::voxelizer
