@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "gl/shader_source.h"
+#include "scenes/scene.h"
+#include "scenes/snapshot.h"
+
+namespace cairn::renderer {
+
+/// A pinhole camera. Pixel (0, 0) is at the top left.
+struct Camera {
+    glm::dvec3 eye{0.0, 0.0, 1.0};
+    glm::dvec3 target{0.0};
+    glm::dvec3 up{0.0, 1.0, 0.0};
+    double yfov = 0.785398163397448;  ///< radians, the whole angle, in (0, pi)
+};
+
+/// Looks at the whole of the bounds from the front, above and to the right.
+[[nodiscard]] Camera framing_camera(const scenes::Bounds& bounds, double aspect);
+
+/// One light, white by default.
+struct Light {
+    bool positional = false;
+    glm::dvec3 position{0.0};              ///< world, when positional
+    glm::dvec3 towards{0.4, 0.8, 0.45};    ///< direction to the light, when not
+    glm::vec3 color{1.0F};
+    float ambient = 0.25F;                 ///< light from everywhere, as a share of the light's own
+};
+
+enum class Shadow : std::uint8_t { none, hard };
+
+struct View {
+    int width = 512;   ///< pixels, [1, 16384]
+    int height = 512;
+    Camera camera;
+    Light light;
+    Shadow shadow = Shadow::hard;
+    glm::vec3 background{0.80F, 0.84F, 0.90F};  ///< linear
+    /// A ray stops descending where a voxel is narrower than this many pixels (Crassin et al. 2008, section 4.3).
+    double pixel_error = 1.0;
+};
+
+/// The shape of the N^3-tree and the bounds of its caches (Crassin et al. 2008, section 4).
+struct TreeOptions {
+    int n = 4;                                   ///< children an axis: 2 or 4
+    int m = 16;                                  ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
+    int max_resolution = 8192;                   ///< voxels across the root cube that rays may ask for
+    std::size_t node_pool_bytes = 8U << 20U;
+    std::size_t brick_pool_bytes = 128U << 20U;
+};
+
+/// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended in).
+struct Image {
+    int width = 0;
+    int height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+/// Counters of one `render()`.
+struct FrameStatistics {
+    double milliseconds = 0.0;
+    int passes = 0;                     ///< ray-marching passes until nothing was missing
+    std::uint64_t tile_queries = 0;     ///< misses that rays reported
+    std::uint64_t nodes_subdivided = 0;
+    std::uint64_t bricks_produced = 0;
+    std::uint64_t bricks_evicted = 0;
+    std::uint64_t nodes_evicted = 0;
+    double march_ms = 0.0;              ///< of `milliseconds`: rays
+    double produce_ms = 0.0;            ///< of `milliseconds`: subdividing, producing, uploading
+    std::uint64_t bricks_resident = 0;  ///< after the frame
+    std::size_t node_pool_bytes = 0;    ///< what the two stores take, all of it, used or not
+    std::size_t brick_pool_bytes = 0;
+};
+
+/// Renders a scene through its voxel cache. Only what rays prove visible is voxelized, no finer than a pixel shows.
+/// Bricks stay in the pools from one frame to the next. Needs the context that was current at its construction.
+///
+/// The picture depends on the view alone: not on the pools' sizes, nor on what earlier frames left in them.
+class Renderer {
+public:
+    /// The scene and the snapshot are not needed afterwards.
+    /// @throws Error  Fault::usage for a tree shape or a pool that cannot work; Fault::memory when it does not fit.
+    Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options = {},
+             const gl::ShaderSource& shaders = {});
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+    ~Renderer();
+
+    /// @param progress  called after each pass with the share of pixels that are done, in [0, 1].
+    [[nodiscard]] Image render(const View& view, const std::function<void(double)>& progress = {});
+
+    /// Of the last `render()`.
+    [[nodiscard]] const FrameStatistics& statistics() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace cairn::renderer
