@@ -30,7 +30,7 @@ struct Order {
 
 constexpr std::array<Order, 4> orders = {
     Order{1, 32, 20, 0.0, 0.0, 0.0, 0.0, 0.25, 0.3},
-    Order{18, 14, 12, 0.62, 0.55, 0.3, 1.15, 0.5, 0.45},
+    Order{18, 14, 12, 0.56, 0.55, 0.28, 1.2, 0.5, 0.3},
     Order{9, 8, 8, 0.5, 0.6, 0.25, 0.85, 0.6, 0.2},
     Order{8, 4, 5, 0.42, 0.6, 0.2, 0.75, 0.6, 0.0},
 };
@@ -74,7 +74,7 @@ public:
         : bark_(bark), foliage_(foliage), leaves_(leaves) {}
 
     void grow() {
-        grow_branch(0, {0.0, -trunk_length * 0.72, 0.0}, {0.0, 1.0, 0.0}, trunk_length, trunk_radius);
+        grow_branch(0, {0.0, -trunk_length * 0.6, 0.0}, {0.0, 1.0, 0.0}, trunk_length, trunk_radius);
     }
 
 private:
@@ -134,7 +134,7 @@ void TreeGrower::grow_children(const Branch& branch) {
         const double spread = shape.spread * (1.0 - 0.45 * way) * random_.between(0.85, 1.15);
         const double azimuth = first_azimuth + golden_angle * child + random_.between(-0.3, 0.3);
         const glm::dvec3 direction = tilted(branch.directions[section], spread, azimuth);
-        const double length = branch.length * shape.length * (1.0 - 0.55 * way) * random_.between(0.85, 1.15);
+        const double length = branch.length * shape.length * (1.0 - 0.65 * way) * random_.between(0.85, 1.15);
         grow_branch(branch.order + 1, branch.points[section], direction, length,
                     branch.radii[section] * shape.thickness);
     }
@@ -248,8 +248,8 @@ void TreeGrower::add_card(const glm::dvec3& foot, const glm::dmat3& leaf_frame, 
 /// A leaf upright in its image, green with a pale midrib. Arithmetic alone, so every machine cuts the same
 /// leaf.
 Image make_leaf_image() {
-    constexpr int width = 48;
-    constexpr int height = 80;
+    constexpr int width = 64;
+    constexpr int height = 64;
     Image image{"leaf", width, height, {}};
     for (int row = 0; row < height; ++row) {
         for (int column = 0; column < width; ++column) {
@@ -262,7 +262,7 @@ Image make_leaf_image() {
             const double alpha = std::min(std::max(inside, 0.0), 1.0);
             const double vein = std::max(0.0, 1.0 - from_middle * 12.0);
             const auto texel = [](double value) { return static_cast<std::uint8_t>(value + 0.5); };
-            image.rgba.insert(image.rgba.end(), {texel(92.0 + 70.0 * vein), texel(140.0 + 40.0 * vein),
+            image.rgba.insert(image.rgba.end(), {texel(92.0 + 45.0 * vein), texel(140.0 + 40.0 * vein),
                                                  texel(52.0 + 40.0 * vein), texel(255.0 * alpha)});
         }
     }
