@@ -1,0 +1,17 @@
+# The one list of what Cairn needs from Debian 12 or Ubuntu 24.04. Sourced by setup.sh; it only sets two arrays.
+# shellcheck shell=bash disable=SC2034
+
+packages=(
+  # to build
+  g++ cmake ninja-build pkg-config python3-glad
+  # linked, or compiled in
+  libglm-dev libfmt-dev libglfw3-dev libegl-dev libtinygltf-dev libstb-dev nlohmann-json3-dev
+  libdraco-dev libmeshoptimizer-dev libembree-dev libtbb-dev libcli11-dev
+  # opened when the program runs: OpenGL without a GPU and without a display
+  libegl1 libgl1-mesa-dri
+  # to test, to chart, and to have something to show
+  libgtest-dev libbenchmark-dev glslang-tools gnuplot-nox assimp-testmodels
+)
+
+# Mesa 25.1 ended OSMesa, so a newer distribution may lack it; EGL then takes its place.
+optional_packages=(libosmesa6-dev)
