@@ -9,4 +9,24 @@
 #define SSBO_SURFACE_MATERIALS 3   // SurfaceMaterial
 #define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each
 
+// The producer's own (beside the surface's 0 to 4).
+#define SSBO_BRICK_PAIRS 5    // BrickPair: which triangle touches which tile of the batch
+#define SSBO_BRICK_TILES 6    // BrickTile: the tiles of the batch
+#define SSBO_BRICK_SCRATCH 7  // SCRATCH_* words a voxel of the batch
+#define SSBO_BRICK_MASKS 0    // masks and summaries of the brick pool (resolve passes, which read no surface)
+#define IMAGE_BRICK_COLOR 0
+#define IMAGE_BRICK_NORMAL 1
+
+// The marcher.
+#define UBO_VIEW 0
+#define SSBO_RAYS 0     // RayState a pixel
+#define SSBO_LISTS 1    // pixels that wait: four lists of one pixel count each
+#define SSBO_QUERIES 2  // MarchCounters, then the tile query buffer
+#define SSBO_USAGE 3    // the last pass that used each brick; then bits: queries already made in this pass
+#define SSBO_IMAGE 4    // RGBA8 a pixel
+#define TEXTURE_NODES 0
+#define TEXTURE_BRICK_MASKS 1
+#define TEXTURE_BRICK_COLOR 2   // or coverage alone
+#define TEXTURE_BRICK_NORMAL 3
+
 #endif

@@ -37,7 +37,57 @@ struct SurfaceMaterial {
     float padding2;
 };
 
+// One tile in the node pool (Crassin et al. 2008, section 4.2). A tile that is empty has no entry: its bit in the
+// parent's mask is 0.
+struct NodeEntry {
+    uvec2 child_mask;  // bit x + N (y + N z): child (x, y, z) is not empty
+    uint children;     // number of the first child's entry; 0 = leaf
+    uint brick;        // slot + 1; 0 = no brick (not valid)
+};
+
+// A tile whose brick is being produced, and a triangle that may touch it.
+struct BrickTile {
+    ivec4 low_shift;   // xyz: low corner, in voxels of the tile's level, without the border; w: log2 of a voxel's side
+    ivec4 slot_texel;  // xyz: first texel of the slot in the pool's textures (border included); w: slot
+};
+struct BrickPair {
+    uint triangle;     // local to the bound surface chunk
+    uint tile_slices;  // tile in the batch | first z slice << 16 | slice count << 24
+};
+
+// All lengths in voxels of the finest level, positions from the root cube's low corner.
+struct MarchView {
+    vec4 eye;              // w: pixel width at distance 1, times the pixel error
+    vec4 forward;          // unit
+    vec4 right;            // half the image's width at distance 1
+    vec4 up;               // half the image's height at distance 1
+    vec4 light;            // xyz: position, or unit direction to the light; w: 1 = positional
+    vec4 light_color;      // w: ambient
+    vec4 background;
+    ivec4 size_shadow;     // xy: pixels; z: 1 = trace shadow rays
+};
+
+// A ray between two passes. Primary: what it has gathered. Shadow: depth and color stay, `weight` becomes visibility.
+struct RayState {
+    vec4 color;            // rgb: gathered, premultiplied; a: transmittance
+    vec4 normal_depth;     // xyz: gathered normal; w: distance of the voxel that weighs most
+    uvec4 voxel_t_weight;  // xy: packed voxel; z, w: bits of floats: distance; the greatest weight, or the light's visibility
+};
+
+struct MarchCounters {
+    uint waiting_primary;
+    uint waiting_shadow;
+    uint queries;
+    uint step_limit_hits;  // rays stopped by the step limit: a fault, never ignored
+};
+
 #ifdef __cplusplus
+static_assert(sizeof(NodeEntry) == 16, "GLSL sees another layout");
+static_assert(sizeof(BrickTile) == 32, "GLSL sees another layout");
+static_assert(sizeof(BrickPair) == 8, "GLSL sees another layout");
+static_assert(sizeof(MarchView) == 128, "GLSL sees another layout");
+static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
+static_assert(sizeof(MarchCounters) == 16, "GLSL sees another layout");
 static_assert(sizeof(SurfaceTriangle) == 16, "GLSL sees another layout");
 static_assert(sizeof(SurfaceAttributes) == 16, "GLSL sees another layout");
 static_assert(sizeof(SurfaceMaterial) == 48, "GLSL sees another layout");

@@ -1,0 +1,93 @@
+// One thread is one waiting primary ray.
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0
+// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0
+#include "march/march.glsl"
+#include "march/shade.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform uint ray_count;
+uniform bool first_pass;     // all pixels, in 8x8 blocks; else those of the list
+uniform uint list_in;        // words in lists[]
+uniform uint list_out;
+uniform uint shadow_list;
+
+RayState state;
+
+bool visit(inout Ray ray, Sample s) {
+    const float opacity = opacity_of(coverage_of(s), s.chord);
+    const float weight = state.color.a * opacity;
+    vec3 color = vec3(1.0);
+    const vec3 coordinate = pool_coordinate(s);
+#if HAS_COLOR
+    const vec4 filtered = textureLod(brick_color, coordinate, 0.0);
+    color = filtered.rgb / max(filtered.a, 1.0 / 512.0);
+    color *= color;  // stored as square roots, for the eye's sake
+#endif
+    const vec3 normal = textureLod(brick_normal, coordinate, 0.0).xyz * 2.0 - 1.0;
+    state.color.rgb += weight * color;
+    state.normal_depth.xyz += weight * normal / max(length(normal), 1e-3);
+    if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
+        state.voxel_t_weight.w = floatBitsToUint(weight);
+        state.normal_depth.w = s.t;
+    }
+    state.color.a -= weight;
+    return state.color.a > OPAQUE_TRANSMITTANCE;
+}
+
+// Is there light to be stopped on its way to this point?
+bool needs_shadow_ray(vec3 direction) {
+    if (view.size_shadow.z == 0 || state.color.a > 1.0 - 1.0 / 512.0) return false;
+    const vec3 point = view.eye.xyz + direction * state.normal_depth.w;
+    return dot(facing_normal(state, direction), direction_to_light(point)) > 0.0;
+}
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (i >= ray_count) return;
+    ivec2 pixel;
+    if (first_pass) {
+        const int blocks = (view.size_shadow.x + 7) / 8;
+        const int block = int(i / 64u);
+        pixel = ivec2(block % blocks, block / blocks) * 8 + ivec2(i % 8u, i / 8u % 8u);
+        if (any(greaterThanEqual(pixel, view.size_shadow.xy))) return;
+    } else {
+        const int p = int(lists[list_in + i]);
+        pixel = ivec2(p % view.size_shadow.x, p / view.size_shadow.x);
+    }
+    const uint index = uint(pixel.y * view.size_shadow.x + pixel.x);
+    const vec3 direction = pixel_direction(pixel);
+    Ray ray = make_ray(view.eye.xyz, direction, 1e30, 0.0, view.eye.w);
+
+    int end = MARCH_DONE;
+    if (first_pass) {
+        state.color = vec4(0.0, 0.0, 0.0, 1.0);
+        state.normal_depth = vec4(0.0);
+        state.voxel_t_weight = uvec4(0u);
+        if (enter_root(ray)) end = march(ray);
+    } else {
+        state = rays[index];
+        load_position(ray, state);
+        end = march(ray);
+    }
+
+    if (end == MARCH_MISSING) {
+        store_position(state, ray);
+        rays[index] = state;
+        lists[list_out + atomicAdd(counters.waiting_primary, 1u)] = index;
+    } else {
+        if (state.color.a <= OPAQUE_TRANSMITTANCE) {
+            // What little shines through is the surface's own: no background in a solid thing.
+            state.color.rgb /= 1.0 - state.color.a;
+            state.color.a = 0.0;
+        }
+        if (needs_shadow_ray(direction)) {
+            state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
+            rays[index] = state;
+            lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
+        } else {
+            write_pixel(pixel, state, 1.0);
+        }
+    }
+}

@@ -1,0 +1,63 @@
+// One thread is one waiting shadow ray: from what a primary ray saw, to the light.
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0
+// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0
+#include "march/march.glsl"
+#include "march/shade.glsl"
+
+layout(local_size_x = 64) in;
+
+uniform uint ray_count;
+uniform uint list_in;
+uniform uint list_out;
+
+float visibility;
+
+bool visit(inout Ray ray, Sample s) {
+    visibility *= 1.0 - opacity_of(coverage_of(s), s.chord);
+    return visibility > OPAQUE_TRANSMITTANCE;
+}
+
+// Side of the voxels that a cone of this width is shown with (see march()).
+float voxel_side(float width) {
+    float side = float(ROOT_SIDE >> M_SHIFT);
+    for (int level = 0; level < MAX_LEVEL && side > width; ++level) side /= float(TREE_N);
+    return side;
+}
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (i >= ray_count) return;
+    const uint index = lists[list_in + i];
+    const ivec2 pixel = ivec2(int(index) % view.size_shadow.x, int(index) / view.size_shadow.x);
+    RayState state = rays[index];
+
+    // The ray starts a voxel above the surface, and what it meets before its first empty cell is that surface still.
+    const vec3 direction = pixel_direction(pixel);
+    const float width = view.eye.w * state.normal_depth.w;
+    const float side = voxel_side(width);
+    const vec3 start = view.eye.xyz + direction * state.normal_depth.w + facing_normal(state, direction) * side;
+    const vec3 to_light = direction_to_light(start);
+    const float reach = view.light.w > 0.5 ? distance(view.light.xyz, start) : 1e30;
+    Ray ray = make_ray(start, to_light, reach, width, 0.0);
+
+    bool inside = true;
+    if (all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)))) {
+        visibility = 1.0;
+        inside = enter_root(ray);
+        ray.leaving = true;
+    } else {
+        load_position(ray, state);
+        visibility = uintBitsToFloat(state.voxel_t_weight.w);
+    }
+    ray.leaving_end = 2.0 * side;
+
+    if (inside && march(ray) == MARCH_MISSING) {
+        store_position(state, ray);
+        state.voxel_t_weight.w = floatBitsToUint(visibility);
+        rays[index] = state;
+        lists[list_out + atomicAdd(counters.waiting_shadow, 1u)] = index;
+        return;
+    }
+    write_pixel(pixel, state, visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0);
+}

@@ -1,0 +1,36 @@
+// One thread is one block of 4^3 voxels of a new brick: it packs their occupancy into the 64-bit mask that rays skip by.
+// defines: BRICK_M=16 HAS_COLOR=1
+// defines: BRICK_M=8 HAS_COLOR=0
+#include "produce/scratch.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = SSBO_BRICK_MASKS) writeonly buffer MaskBlock { uvec2 brick_masks[]; };
+
+uniform uint tile_count;
+
+#define BLOCKS_A_SIDE (BRICK_M / 4)
+#define BLOCKS (BLOCKS_A_SIDE * BLOCKS_A_SIDE * BLOCKS_A_SIDE)
+#define SUMMARY_WORDS ((BLOCKS + 63) / 64)
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (i >= tile_count * uint(BLOCKS)) return;
+    const uint tile = i / uint(BLOCKS);
+    const int block = int(i % uint(BLOCKS));
+    const ivec3 low = 4 * ivec3(block % BLOCKS_A_SIDE, block / BLOCKS_A_SIDE % BLOCKS_A_SIDE,
+                                block / (BLOCKS_A_SIDE * BLOCKS_A_SIDE));
+    uvec2 mask = uvec2(0u);
+    for (int z = 0; z < 4; ++z) {
+        for (int y = 0; y < 4; ++y) {
+            for (int x = 0; x < 4; ++x) {
+                const uint word = scratch_word(tile, low + ivec3(x, y, z) + 1) + uint(SCRATCH_MASK);
+                const uint bit = (scratch[word] | scratch[word + 1u]) != 0u ? 1u : 0u;
+                if (z < 2) mask.x |= bit << (x + 4 * y + 16 * z);
+                else mask.y |= bit << (x + 4 * y + 16 * (z - 2));
+            }
+        }
+    }
+    const uint slot = uint(tiles[tile].slot_texel.w);
+    brick_masks[slot * uint(SUMMARY_WORDS + BLOCKS) + uint(SUMMARY_WORDS) + uint(block)] = mask;
+}

@@ -1,0 +1,64 @@
+// One thread is one voxel of a new brick, border included: it turns what was gathered into the pool's texels, and
+// leaves the scratch empty for the next batch.
+// defines: BRICK_M=16 HAS_COLOR=1
+// defines: BRICK_M=8 HAS_COLOR=0
+#include "produce/scratch.glsl"
+
+layout(local_size_x = 64) in;
+
+#if HAS_COLOR
+layout(rgba8, binding = IMAGE_BRICK_COLOR) writeonly uniform image3D brick_color;
+#else
+layout(r8, binding = IMAGE_BRICK_COLOR) writeonly uniform image3D brick_color;
+#endif
+layout(rgb10_a2, binding = IMAGE_BRICK_NORMAL) writeonly uniform image3D brick_normal;
+
+uniform uint tile_count;
+
+// The share of the voxel's face that the surface covers, seen along the axis where it covers most: what a ray through
+// the voxel meets. A sheet covers all of it, however thin; a wire, as much as it is wide.
+float coverage(uvec2 mask) {
+    const uint along_z = (mask.x | mask.x >> 16 | mask.y | mask.y >> 16) & 0xFFFFu;
+    uvec2 y = mask | mask >> 4;
+    y = (y | y >> 8) & 0x000F000Fu;
+    uvec2 x = mask | mask >> 1;
+    x = (x | x >> 2) & 0x11111111u;
+    const int most = max(bitCount(along_z), max(bitCount(y.x) + bitCount(y.y), bitCount(x.x) + bitCount(x.y)));
+    return float(most) / 16.0;
+}
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (i >= tile_count * uint(VOXELS)) return;
+    const uint tile = i / uint(VOXELS);
+    const int v = int(i % uint(VOXELS));
+    const ivec3 place = ivec3(v % SIDE, v / SIDE % SIDE, v / (SIDE * SIDE));
+    const uint word = i * uint(SCRATCH_WORDS);
+    const uvec2 mask = uvec2(scratch[word], scratch[word + 1u]);
+
+    float covered = 0.0;
+    vec3 normal = vec3(0.0);
+    vec3 color = vec3(0.0);
+    if ((mask.x | mask.y) != 0u) {
+        covered = coverage(mask);
+        const vec3 sum = vec3(int(scratch[word + SCRATCH_NORMAL]), int(scratch[word + SCRATCH_NORMAL + 1u]),
+                              int(scratch[word + SCRATCH_NORMAL + 2u]));
+        const float size = length(sum);
+        if (size > 0.0) normal = sum / size;
+#if HAS_COLOR
+        const float weight = float(min(scratch[word + SCRATCH_WEIGHT], SCRATCH_WEIGHT_LIMIT));
+        const vec3 colors = vec3(scratch[word + SCRATCH_COLOR], scratch[word + SCRATCH_COLOR + 1u],
+                                 scratch[word + SCRATCH_COLOR + 2u]);
+        color = sqrt(clamp(colors / (weight * SCRATCH_COLOR_UNIT), 0.0, 1.0));
+#endif
+        for (uint w = 0u; w < uint(SCRATCH_WORDS); ++w) scratch[word + w] = 0u;
+    }
+    const ivec3 texel = tiles[tile].slot_texel.xyz + place;
+    // Both are weighted with the coverage, so that a filtered fetch does not mix in what is empty.
+#if HAS_COLOR
+    imageStore(brick_color, texel, vec4(color * covered, covered));
+#else
+    imageStore(brick_color, texel, vec4(covered));
+#endif
+    imageStore(brick_normal, texel, vec4(normal * covered * 0.5 + 0.5, 1.0));
+}

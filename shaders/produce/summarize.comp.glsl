@@ -1,0 +1,30 @@
+// One thread is one summary word of a new brick: which of 64 blocks are not empty.
+// defines: BRICK_M=16 HAS_COLOR=1
+// defines: BRICK_M=8 HAS_COLOR=0
+#include "produce/scratch.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
+
+uniform uint tile_count;
+
+#define BLOCKS_A_SIDE (BRICK_M / 4)
+#define BLOCKS (BLOCKS_A_SIDE * BLOCKS_A_SIDE * BLOCKS_A_SIDE)
+#define SUMMARY_WORDS ((BLOCKS + 63) / 64)
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (i >= tile_count * uint(SUMMARY_WORDS)) return;
+    const uint slot = uint(tiles[i / uint(SUMMARY_WORDS)].slot_texel.w);
+    const uint word = i % uint(SUMMARY_WORDS);
+    const uint first = slot * uint(SUMMARY_WORDS + BLOCKS);
+    uvec2 summary = uvec2(0u);
+    for (uint bit = 0u; bit < 64u && word * 64u + bit < uint(BLOCKS); ++bit) {
+        const uvec2 mask = brick_masks[first + uint(SUMMARY_WORDS) + word * 64u + bit];
+        const uint full = (mask.x | mask.y) != 0u ? 1u : 0u;
+        if (bit < 32u) summary.x |= full << bit;
+        else summary.y |= full << (bit - 32u);
+    }
+    brick_masks[first + word] = summary;
+}

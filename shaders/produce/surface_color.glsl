@@ -1,0 +1,47 @@
+// Base colour and normal of a surface at a point of one of its triangles.
+
+layout(std430, binding = SSBO_SURFACE_ATTRIBUTES) readonly buffer AttributeBlock { SurfaceAttributes attributes[]; };
+
+// Inverse of the octahedral map (Cigolle et al. 2014); 0 = no normal.
+vec3 decode_normal(uint packed_normal) {
+    const vec2 e = unpackSnorm2x16(packed_normal);
+    const float z = 1.0 - abs(e.x) - abs(e.y);
+    const vec2 folded = (1.0 - abs(e.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(e, vec2(0.0)));
+    return normalize(vec3(z < 0.0 ? folded : e, z));
+}
+
+vec3 linear_from_srgb(vec3 c) {
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+// A point on a triangle, by weights of its vertices.
+struct SurfacePoint {
+    uvec3 vertices;
+    vec3 weights;
+};
+
+vec3 normal_at(SurfacePoint p, vec3 triangle_normal) {
+    const uvec3 packed_normals = uvec3(attributes[p.vertices.x].normal, attributes[p.vertices.y].normal,
+                                       attributes[p.vertices.z].normal);
+    if (any(equal(packed_normals, uvec3(0u)))) return triangle_normal;
+    const vec3 n = p.weights.x * decode_normal(packed_normals.x) + p.weights.y * decode_normal(packed_normals.y) +
+                   p.weights.z * decode_normal(packed_normals.z);
+    const float size = length(n);
+    return size > 1e-6 ? n / size : triangle_normal;
+}
+
+#if HAS_COLOR
+vec3 color_at(SurfacePoint p, SurfaceMaterial material) {
+    vec3 color = material.base_color.rgb;
+    color *= p.weights.x * unpackUnorm4x8(attributes[p.vertices.x].color).rgb +
+             p.weights.y * unpackUnorm4x8(attributes[p.vertices.y].color).rgb +
+             p.weights.z * unpackUnorm4x8(attributes[p.vertices.z].color).rgb;
+    if (material.width != 0u) {
+        const vec2 uv = p.weights.x * attributes[p.vertices.x].texcoord +
+                        p.weights.y * attributes[p.vertices.y].texcoord +
+                        p.weights.z * attributes[p.vertices.z].texcoord;
+        color *= linear_from_srgb(unpackUnorm4x8(nearest_texel(material, uv)).rgb);
+    }
+    return color;
+}
+#endif
