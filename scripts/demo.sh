@@ -18,7 +18,7 @@ stage() {
 
 build() {
   cmake --preset release
-  cmake --build --preset release --target cairn
+  cmake --build --preset release --target cairn_app
 }
 
 render() {
