@@ -10,7 +10,7 @@ packages=(
   # opened when the program runs: OpenGL without a GPU and without a display
   libegl1 libgl1-mesa-dri
   # to test, to chart, and to have something to show
-  libgtest-dev libbenchmark-dev glslang-tools gnuplot-nox assimp-testmodels
+  libgtest-dev libbenchmark-dev glslang-tools xvfb gnuplot-nox assimp-testmodels
 )
 
 # Mesa 25.1 ended OSMesa, so a newer distribution may lack it; EGL then takes its place.

@@ -1,0 +1,39 @@
+#include "app/driver.h"
+
+#include <cstdlib>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+
+namespace cairn::app {
+namespace {
+
+bool wants_debugging() {
+#ifdef NDEBUG
+    return std::getenv("CAIRN_GL_DEBUG") != nullptr;
+#else
+    return true;
+#endif
+}
+
+}  // namespace
+
+Driver::Driver(const DriverOptions& options)
+    : context_(gl::create_context({.kind = options.context, .debug = wants_debugging()})) {}
+
+std::string Driver::name() const {
+    return gl::driver_name();
+}
+
+void Driver::check() const {
+    const std::vector<std::string> messages = context_->debug_log().take();
+    if (messages.empty()) return;
+    throw Error(Fault::context, gl::driver_name(),
+                fmt::format("OpenGL reported {}", fmt::join(messages, "; ")),
+                "a fault of cairn or of the driver: please report it");
+}
+
+}  // namespace cairn::app

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/options.h"
+#include "gl/context.h"
+
+namespace cairn::app {
+
+/// The OpenGL context of a verb. In debug builds, and where the environment holds CAIRN_GL_DEBUG, KHR_debug
+/// listens.
+class Driver {
+public:
+    /// @throws Error (Fault::context)
+    explicit Driver(const DriverOptions& options);
+
+    [[nodiscard]] std::string name() const;  ///< of the driver, for reports
+    /// @throws Error (Fault::context) when KHR_debug heard of an error or of undefined behaviour: a bug of
+    /// ours.
+    void check() const;
+
+private:
+    std::unique_ptr<gl::Context> context_;
+};
+
+}  // namespace cairn::app

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "base/error.h"
+
+namespace cairn::app {
+
+/// What the process answers to the shell; README.md lists them.
+enum class ExitCode : int {
+    done = 0,
+    differs = 1,    ///< a comparison found a difference
+    usage = 2,      ///< wrong usage, or an output that cannot be written
+    input = 3,      ///< a bad input file
+    context = 4,    ///< no usable OpenGL 4.5
+    memory = 5,     ///< it does not fit
+    internal = 70,  ///< a fault of cairn itself (EX_SOFTWARE of sysexits.h); never expected
+};
+
+[[nodiscard]] constexpr ExitCode exit_code(Fault fault) {
+    switch (fault) {
+        case Fault::usage:
+            return ExitCode::usage;
+        case Fault::input:
+            return ExitCode::input;
+        case Fault::context:
+            return ExitCode::context;
+        case Fault::memory:
+            return ExitCode::memory;
+    }
+    return ExitCode::internal;
+}
+
+}  // namespace cairn::app

@@ -1,0 +1,79 @@
+#include <string>
+
+#include <fmt/format.h>
+
+#include "app/exit_code.h"
+#include "app/terminal.h"
+#include "app/verbs.h"
+#include "scenes/builtin.h"
+
+namespace cairn::app {
+namespace {
+
+std::string footer() {
+    std::string text = "Built-in scenes:\n";
+    for (const scenes::Builtin& builtin : scenes::builtins()) {
+        text += fmt::format("  builtin:{:<14}{}\n", builtin.name, builtin.description);
+    }
+    text +=
+        "\nExit codes: 0 done, 1 a comparison found a difference, 2 wrong usage, 3 bad input file,\n"
+        "4 no usable OpenGL 4.5 context, 5 out of memory.\n"
+        "With CAIRN_GL_DEBUG in the environment, any error that OpenGL reports ends the work.\n"
+        "\n\"cairn VERB --help\" lists what a verb takes.";
+    return text;
+}
+
+/// An argument that stands where a verb is expected but is none.
+/// CLI11 would only say that something was not expected.
+bool is_unknown_verb(const CLI::App& command, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return false;
+    const auto called = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
+    return command.get_subcommands(called).empty();
+}
+
+ExitCode report_usage(const CLI::App& command, const CLI::ParseError& error) {
+    std::string asked = "cairn";
+    for (const CLI::App* verb : command.get_subcommands())
+        asked += " " + verb->get_name();
+    print_error(error.what(), fmt::format("\"{} --help\" lists what it takes", asked));
+    return ExitCode::usage;
+}
+
+ExitCode run(int argc, char** argv) {
+    CLI::App command("Voxelizes glTF scenes on the GPU, and renders them through a bounded voxel cache.",
+                     "cairn");
+    Work chosen;
+    add_info(command, chosen);
+    add_voxelize(command, chosen);
+    add_check(command, chosen);
+    add_render(command, chosen);
+    add_export(command, chosen);
+    command.require_subcommand(1);
+    command.set_version_flag("--version", "cairn " CAIRN_VERSION);
+    command.get_formatter()->column_width(38);
+    command.footer(footer());
+    if (is_unknown_verb(command, argc, argv)) {
+        print_error(fmt::format("there is no verb \"{}\"", argv[1]), "\"cairn --help\" lists them");
+        return ExitCode::usage;
+    }
+    try {
+        command.parse(argc, argv);
+    } catch (const CLI::Success& asked_for_help) {
+        command.exit(asked_for_help);  // prints it
+        return ExitCode::done;
+    } catch (const CLI::ParseError& error) {
+        return report_usage(command, error);
+    }
+    return chosen();
+}
+
+}  // namespace
+}  // namespace cairn::app
+
+int main(int argc, char** argv) {
+    try {
+        return int(cairn::app::run(argc, argv));
+    } catch (...) {
+        return int(cairn::app::report_current_exception());
+    }
+}

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <utility>
+
+#include <sys/resource.h>
+
+namespace cairn::app {
+
+/// Time on the wall since it was made, or since the last `lap_ms()`.
+class Stopwatch {
+public:
+    [[nodiscard]] double lap_ms() {
+        const Clock::time_point now = Clock::now();
+        return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point start_ = Clock::now();
+};
+
+/// The most memory that this process has held at once.
+[[nodiscard]] inline std::uint64_t peak_rss_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;  // Linux counts it in KiB
+}
+
+}  // namespace cairn::app

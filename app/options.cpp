@@ -1,0 +1,143 @@
+#include "app/options.h"
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/parse.h"
+#include "base/error.h"
+#include "base/output_file.h"
+
+namespace cairn::app {
+namespace {
+
+/// Past this a cube of bits takes 8 GiB.
+constexpr int max_grid_resolution = 4096;
+constexpr int max_scene_index = 1 << 20;
+
+gl::ContextKind context_named(const std::string& name) {
+    if (name == "auto") return gl::ContextKind::automatic;
+    if (name == "osmesa") return gl::ContextKind::osmesa;
+    if (name == "egl") return gl::ContextKind::egl;
+    throw Error(Fault::usage, "--context", fmt::format("there is no \"{}\"", name),
+                "choose auto, osmesa or egl");
+}
+
+scenes::Bounds bounds_of(const std::string& text) {
+    const std::vector<double> n = parse_numbers("--bounds", text, 6, 6);
+    const scenes::Bounds bounds{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (bounds.low[axis] >= bounds.high[axis]) {
+            throw Error(Fault::usage, "--bounds",
+                        fmt::format("{0}0 = {1} is not less than {0}1 = {2}", "XYZ"[axis], bounds.low[axis],
+                                    bounds.high[axis]),
+                        "the order is X0,Y0,Z0,X1,Y1,Z1");
+        }
+    }
+    return bounds;
+}
+
+gl::ShaderSource shaders_in(const std::filesystem::path& folder) {
+    if (!std::filesystem::is_directory(folder)) {
+        throw Error(Fault::usage, "--shader-dir", fmt::format("\"{}\" is not a folder", folder.string()),
+                    "name the shaders/ folder of the sources");
+    }
+    return gl::ShaderSource(folder);
+}
+
+}  // namespace
+
+CLI::Option* add_parsed_option(CLI::App& verb, const std::string& name, const std::string& value_name,
+                               const std::string& description,
+                               const std::function<void(const std::string&)>& parse) {
+    return verb.add_option_function<std::string>(name, parse, description)->type_name(value_name);
+}
+
+void add_report_options(CLI::App& verb, ReportOptions& options) {
+    add_parsed_option(verb, "--json", "FILE", "write every figure as JSON too; - is stdout, without the text",
+                      [&options](const std::string& target) {
+                          if (target != "-") check_writable(target);
+                          options.json = target;
+                      });
+    verb.add_flag("--quiet", options.quiet, "print nothing but errors");
+}
+
+void add_scene_argument(CLI::App& verb, SceneOptions& options) {
+    verb.add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME")
+        ->required()
+        ->type_name("");
+    verb.add_flag("--trust-paths", options.trust_paths,
+                  "let the scene read files outside its own folder (only for files you trust)");
+}
+
+void add_moment_options(CLI::App& verb, SceneOptions& options) {
+    add_parsed_option(
+        verb, "--time", "SECONDS", "the moment to show; plays the first animation if none is named",
+        [&options](const std::string& text) { options.seconds = parse_number("--time", text); });
+    add_parsed_option(verb, "--animation", "NAME|INDEX", "the animation to play, by name or counted from 0",
+                      [&options](const std::string& text) { options.animation = text; });
+    add_parsed_option(verb, "--scene-index", "I",
+                      "which scene of the file, counted from 0 (default: the file's own choice)",
+                      [&options](const std::string& text) {
+                          options.scene_index = parse_int("--scene-index", text, 0, max_scene_index);
+                      });
+}
+
+void add_driver_options(CLI::App& verb, DriverOptions& options) {
+    add_parsed_option(verb, "--context", "auto|osmesa|egl", "where OpenGL comes from (default: auto)",
+                      [&options](const std::string& text) { options.context = context_named(text); });
+    add_parsed_option(verb, "--shader-dir", "DIR",
+                      "read the shaders from a folder instead of the built-in copies",
+                      [&options](const std::string& text) { options.shaders = shaders_in(text); });
+}
+
+void add_common_options(CLI::App& verb, CommonOptions& options) {
+    add_scene_argument(verb, options.scene);
+    add_moment_options(verb, options.scene);
+    add_driver_options(verb, options.driver);
+    add_report_options(verb, options.report);
+}
+
+void add_grid_options(CLI::App& verb, GridOptions& options) {
+    add_parsed_option(verb, "-r,--resolution", "N",
+                      fmt::format("voxels a side, 1 to {}", max_grid_resolution),
+                      [&options](const std::string& text) {
+                          options.resolution = parse_int("--resolution", text, 1, max_grid_resolution);
+                      })
+        ->required();
+    add_parsed_option(
+        verb, "--bounds", "X0,Y0,Z0,X1,Y1,Z1",
+        "the part of the world to cut into voxels: the cube at its low corner, as wide as its longest "
+        "side (default: a cube around the scene)",
+        [&options](const std::string& text) { options.bounds = bounds_of(text); });
+}
+
+CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,
+                               std::initializer_list<std::string_view> endings,
+                               const std::string& description) {
+    const std::vector<std::string_view> known(endings);
+    return add_parsed_option(
+        verb, "-o,--output", "FILE", description, [&output, known](const std::string& text) {
+            const std::filesystem::path path(text);
+            // A device such as /dev/null has no ending, and asks for none.
+            const bool is_device = std::filesystem::exists(path) && !std::filesystem::is_regular_file(path) &&
+                                   !std::filesystem::is_directory(path);
+            if (!is_device &&
+                std::find(known.begin(), known.end(), path.extension().string()) == known.end()) {
+                throw Error(Fault::usage, text.empty() ? "--output" : text,
+                            fmt::format("no format ends in \"{}\"", path.extension().string()),
+                            fmt::format("what this verb writes ends in {}", fmt::join(known, " or ")));
+            }
+            check_writable(path);
+            output = path;
+        });
+}
+
+void check_writable(const std::filesystem::path& path) {
+    const OutputFile probe(path);
+}
+
+}  // namespace cairn::app

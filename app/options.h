@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+#include "gl/context.h"
+#include "gl/shader_source.h"
+#include "scenes/snapshot.h"
+
+/// What verbs have in common on the command line. An `add_...` function teaches options to a verb; they are
+/// stored where its second argument points when the command line has been read.
+namespace cairn::app {
+
+/// Where the figures go.
+struct ReportOptions {
+    std::optional<std::string> json;  ///< a file, or "-": stdout, and nothing else there
+    bool quiet = false;
+};
+void add_report_options(CLI::App& verb, ReportOptions& options);
+
+/// Which scene, and at which moment.
+struct SceneOptions {
+    std::string scene;  ///< a path or "builtin:NAME"
+    bool trust_paths = false;
+    std::optional<double> seconds;
+    std::optional<std::string> animation;  ///< a name or an index
+    std::optional<int> scene_index;
+};
+void add_scene_argument(CLI::App& verb, SceneOptions& options);
+void add_moment_options(CLI::App& verb, SceneOptions& options);
+
+/// Which driver and which shaders.
+struct DriverOptions {
+    gl::ContextKind context = gl::ContextKind::automatic;
+    gl::ShaderSource shaders;
+};
+void add_driver_options(CLI::App& verb, DriverOptions& options);
+
+/// The options that every verb that reads a scene at a moment understands.
+struct CommonOptions {
+    ReportOptions report;
+    SceneOptions scene;
+    DriverOptions driver;
+};
+void add_common_options(CLI::App& verb, CommonOptions& options);
+
+/// Which voxels.
+struct GridOptions {
+    int resolution = 0;
+    std::optional<scenes::Bounds> bounds;
+};
+void add_grid_options(CLI::App& verb, GridOptions& options);
+
+/// `-o FILE`, which must end in one of `endings` (".npy").
+CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,
+                               std::initializer_list<std::string_view> endings,
+                               const std::string& description);
+
+/// Fails now, before any work, when a file cannot be written there. Leaves no trace.
+/// @throws Error (Fault::usage)
+void check_writable(const std::filesystem::path& path);
+
+/// An option whose text `parse` reads; what it throws ends the parsing.
+CLI::Option* add_parsed_option(CLI::App& verb, const std::string& name, const std::string& value_name,
+                               const std::string& description,
+                               const std::function<void(const std::string&)>& parse);
+
+}  // namespace cairn::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+/// Numbers on the command line: read whole ("12abc" is no number), finite, and within their range.
+///
+/// Every function throws Error (Fault::usage) that names the option and repeats what was given.
+namespace cairn::app {
+
+/// @param low, high  both allowed.
+[[nodiscard]] int parse_int(std::string_view option, std::string_view text, int low, int high);
+[[nodiscard]] double parse_number(std::string_view option, std::string_view text);
+
+/// "1,2.5,-3": at least `least` and at most `most` numbers.
+[[nodiscard]] std::vector<double> parse_numbers(std::string_view option, std::string_view text,
+                                                std::size_t least, std::size_t most);
+
+/// "640x480", each within [1, 16384].
+[[nodiscard]] std::pair<int, int> parse_size(std::string_view option, std::string_view text);
+
+}  // namespace cairn::app
