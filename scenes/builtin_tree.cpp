@@ -261,7 +261,7 @@ Image make_leaf_image() {
             const double inside = (half_width - from_middle) * width / 2.0 / 3.0 + 0.5;
             const double alpha = std::min(std::max(inside, 0.0), 1.0);
             const double vein = std::max(0.0, 1.0 - from_middle * 12.0);
-            const auto texel = [](double value) { return static_cast<std::uint8_t>(value + 0.5); };
+            const auto texel = [](double value) { return static_cast<std::uint8_t>(std::lround(value)); };
             image.rgba.insert(image.rgba.end(), {texel(92.0 + 45.0 * vein), texel(140.0 + 40.0 * vein),
                                                  texel(52.0 + 40.0 * vein), texel(255.0 * alpha)});
         }

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace {
@@ -85,7 +86,7 @@ std::string fault_of(const fs::path& root, const std::string& file, bool quoted,
     if (!quoted) {
         for (const External& external : externals) {
             if (name.starts_with(external.name) && !begins_with_any(file, external.seen_by)) {
-                return "<" + name + "> is for " + std::string(external.seen_by.front()) + " only";
+                return fmt::format("<{}> is for {} only", name, external.seen_by.front());
             }
         }
         return {};
@@ -96,9 +97,10 @@ std::string fault_of(const fs::path& root, const std::string& file, bool quoted,
     // Shaders name their files from shaders/, all else from the project's root.
     const bool from_shaders = file.starts_with("shaders/") && fs::exists(root / "shaders" / name);
     const std::string path = from_shaders ? "shaders/" + name : name;
-    if (!fs::exists(root / path)) return "\"" + name + "\" does not exist, seen from the project's root";
+    if (!fs::exists(root / path))
+        return fmt::format("\"{}\" does not exist, seen from the project's root", name);
     if (begins_with_any(path, folder->may_include)) return {};
-    return std::string(folder->name) + " may not include \"" + name + "\"";
+    return fmt::format("{} may not include \"{}\"", folder->name, name);
 }
 
 /// Every #include of the project's folders that the table does not allow, as "file:line: fault".
@@ -120,7 +122,7 @@ std::vector<std::string> violations(const fs::path& root, int* include_count = n
                 if (!std::regex_search(line, parts, include_line)) continue;
                 if (include_count != nullptr) ++*include_count;
                 const std::string fault = fault_of(root, file, parts[1] == "\"", parts[2]);
-                if (!fault.empty()) found.push_back(file + ":" + std::to_string(number) + ": " + fault);
+                if (!fault.empty()) found.push_back(fmt::format("{}:{}: {}", file, number, fault));
             }
         }
     }
@@ -148,6 +150,10 @@ protected:
             add(file, "#pragma once\n");
         }
     }
+    FakeTree(const FakeTree&) = delete;
+    FakeTree(FakeTree&&) = delete;
+    FakeTree& operator=(const FakeTree&) = delete;
+    FakeTree& operator=(FakeTree&&) = delete;
     ~FakeTree() override { fs::remove_all(root_); }
     void add(const std::string& file, const std::string& text) const {
         fs::create_directories((root_ / file).parent_path());
