@@ -58,8 +58,8 @@ struct MorphTarget {
 };
 
 struct SkinWeights {
-    glm::u16vec4 joints;  ///< into Skin::joints
-    glm::vec4 weights;    ///< sum 1 (normalized when loaded), or all 0
+    glm::u16vec4 joints{0};  ///< into Skin::joints
+    glm::vec4 weights{0.0F};    ///< with Primitive::more_skin: sum 1 (normalized when loaded), or all 0
 };
 
 /// Vertices and what they span. Strips, fans and loops are unrolled and missing indices written out when loaded, so
@@ -74,6 +74,7 @@ struct Primitive {
     std::vector<glm::vec2> texcoords;  ///< the set that the material's base colour texture uses, before uv_from_mesh
     std::vector<glm::u8vec4> colors;   ///< COLOR_0: linear RGBA, 255 = 1
     std::vector<SkinWeights> skin;
+    std::vector<std::vector<SkinWeights>> more_skin;  ///< further influences (JOINTS_1, ...), each one a vertex
     std::vector<MorphTarget> morph_targets;
 
     [[nodiscard]] std::size_t element_count() const {

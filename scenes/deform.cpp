@@ -1,0 +1,63 @@
+#include "scenes/deform.h"
+
+#include <cmath>
+
+namespace cairn::scenes {
+namespace {
+
+/// To length 1, or zero when it has none.
+glm::vec3 unit(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0.0 && std::isfinite(length) ? glm::vec3(v / length) : glm::vec3(0.0F);
+}
+
+/// Carries normals where `m` carries points: the cofactors, which unlike the inverse exist for every matrix.
+glm::dmat3 normal_matrix(const glm::dmat3& m) {
+    const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    return glm::dot(cofactors[0], m[0]) < 0.0 ? -cofactors : cofactors;
+}
+
+void add_displacements(std::vector<glm::vec3>& vectors, const std::vector<glm::vec3>& displacements,
+                       float weight) {
+    if (displacements.size() != vectors.size()) return;  // the target leaves this attribute alone
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        vectors[i] += weight * displacements[i];
+}
+
+void blend(glm::dmat4& sum, const SkinWeights& vertex, std::span<const glm::dmat4> matrices) {
+    for (int c = 0; c < 4; ++c)
+        if (vertex.weights[c] != 0.0F)
+            sum += static_cast<double>(vertex.weights[c]) * matrices[vertex.joints[c]];
+}
+
+}  // namespace
+
+DeformedVertices morph(const Primitive& primitive, std::span<const float> weights) {
+    DeformedVertices result{primitive.positions, primitive.normals};
+    const std::size_t count = std::min(weights.size(), primitive.morph_targets.size());
+    for (std::size_t t = 0; t < count; ++t) {
+        if (weights[t] == 0.0F || !std::isfinite(weights[t])) continue;
+        add_displacements(result.positions, primitive.morph_targets[t].positions, weights[t]);
+        add_displacements(result.normals, primitive.morph_targets[t].normals, weights[t]);
+    }
+    for (glm::vec3& normal : result.normals)
+        normal = unit(normal);
+    return result;
+}
+
+void skin(const Primitive& primitive, std::span<const glm::dmat4> world_from_mesh,
+          DeformedVertices& vertices) {
+    if (world_from_mesh.empty()) return;
+    for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
+        glm::dmat4 matrix(0.0);
+        if (!primitive.skin.empty()) blend(matrix, primitive.skin[i], world_from_mesh);
+        for (const auto& set : primitive.more_skin)
+            blend(matrix, set[i], world_from_mesh);
+        if (matrix == glm::dmat4(0.0)) matrix = world_from_mesh[0];
+        vertices.positions[i] = glm::vec3(matrix * glm::dvec4(vertices.positions[i], 1.0));
+        if (!vertices.normals.empty())
+            vertices.normals[i] = unit(normal_matrix(glm::dmat3(matrix)) * glm::dvec3(vertices.normals[i]));
+    }
+}
+
+}  // namespace cairn::scenes

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenes/gltf/buffers.h"
+#include "scenes/gltf/source.h"
+
+namespace cairn::scenes::gltf {
+
+/// The elements of an accessor where they lie, all ranges checked: element i begins at data + i * stride.
+struct Elements {
+    std::string where;                   ///< for messages
+    const std::uint8_t* data = nullptr;  ///< null: every component is 0
+    std::size_t stride = 0;
+    std::size_t count = 0;
+    int width = 0;  ///< components of an element: 1, 2, 3, 4, 9 or 16
+    int component = TINYGLTF_COMPONENT_TYPE_FLOAT;
+    bool normalized = false;
+    std::shared_ptr<const std::vector<std::uint8_t>>
+        storage;  ///< what `data` points into when it was made here
+};
+
+/// Which elements to read, in which order; empty = all.
+using Selection = std::span<const std::uint32_t>;
+
+class Accessors {
+public:
+    Accessors(const Source& source, Buffers& buffers, Budget& budget)
+        : source_(source), buffers_(buffers), budget_(budget) {}
+
+    /// Dense, interleaved or sparse alike. `user` is who asks, for messages: `ear.glb: mesh 2 "ear",
+    /// primitive 0`.
+    /// @throws Error  the accessor leaves its buffer view, or its types are none of glTF's.
+    [[nodiscard]] Elements elements(const std::string& user, int accessor);
+
+    /// The same without data: an accessor whose data stands elsewhere (in a Draco stream).
+    [[nodiscard]] Elements shape(const std::string& user, int accessor) const;
+
+private:
+    [[nodiscard]] Elements with_sparse(const Elements& dense, const tinygltf::Accessor& accessor);
+
+    const Source& source_;
+    Buffers& buffers_;
+    Budget& budget_;
+};
+
+[[nodiscard]] std::size_t component_bytes(int component);
+
+/// Reads `width` floats an element, normalized integers as glTF 2.0, 3.11 says; components that the accessor
+/// lacks become `filler`.
+void read_floats(const Elements& elements, Selection selection, int width, float filler, float* out);
+
+/// Reads whole numbers as they stand.
+/// @throws Error  the accessor's components are not unsigned integers.
+void read_integers(const Elements& elements, Selection selection, int width, std::uint32_t* out);
+
+}  // namespace cairn::scenes::gltf

@@ -1,0 +1,192 @@
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "scenes/gltf/failure.h"
+#include "scenes/gltf/images.h"
+#include "scenes/gltf/reader.h"
+#include "scenes/gltf/uri.h"
+
+namespace cairn::scenes::gltf {
+namespace {
+
+/// A texture as a material refers to it: the same of "baseColorTexture" and of the older "diffuseTexture".
+struct TextureUse {
+    int texture = -1;
+    int texcoord_set = 0;
+    glm::mat3 uv_from_mesh{1.0F};
+};
+
+double number_or(const tinygltf::Value& object, const char* key, double fallback) {
+    return object.Has(key) ? object.Get(key).GetNumberAsDouble() : fallback;
+}
+
+glm::dvec2 pair_or(const tinygltf::Value& object, const char* key, double fallback) {
+    if (!object.Has(key)) return glm::dvec2(fallback);
+    const tinygltf::Value& numbers = object.Get(key);
+    return {numbers.Get(0).GetNumberAsDouble(), numbers.Get(1).GetNumberAsDouble()};
+}
+
+/// KHR_texture_transform: translation * rotation * scale.
+void apply_transform(const std::string& where, const tinygltf::Value& transform, TextureUse& use) {
+    const glm::dvec2 offset = pair_or(transform, "offset", 0.0);
+    const glm::dvec2 scale = pair_or(transform, "scale", 1.0);
+    const double rotation = number_or(transform, "rotation", 0.0);
+    const double c = std::cos(rotation);
+    const double s = std::sin(rotation);
+    use.uv_from_mesh =
+        glm::mat3(glm::dmat3(glm::dvec3(c * scale.x, s * scale.x, 0.0),
+                             glm::dvec3(-s * scale.y, c * scale.y, 0.0), glm::dvec3(offset, 1.0)));
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            if (!std::isfinite(use.uv_from_mesh[column][row]))
+                fail(where, "its texture transform is not finite");
+    use.texcoord_set = static_cast<int>(number_or(transform, "texCoord", use.texcoord_set));
+}
+
+class Materials {
+public:
+    explicit Materials(Reader& reader) : reader_(reader) {}
+
+    void read(std::size_t index) {
+        const tinygltf::Material& source = reader_.source.model.materials[index];
+        where_ = reader_.source.where(element("material", index, source.name));
+        Material material;
+        material.name = source.name;
+        material.double_sided = source.doubleSided;
+        material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
+        if (source.alphaMode == "MASK")
+            material.alpha_mode = AlphaMode::mask;
+        else if (source.alphaMode == "BLEND")
+            material.alpha_mode = AlphaMode::blend;
+        else if (source.alphaMode != "OPAQUE")
+            fail(where_, "unknown \"alphaMode\" " + in_quotes(source.alphaMode));
+
+        const TextureUse use = read_base_color(source, material);
+        if (use.texture >= 0) {
+            material.texture = texture(use.texture);
+            material.uv_from_mesh = use.uv_from_mesh;
+        }
+        reader_.texcoord_sets.push_back(material.texture < 0 ? -1 : use.texcoord_set);
+        reader_.scene.materials.push_back(std::move(material));
+    }
+
+private:
+    TextureUse read_base_color(const tinygltf::Material& source, Material& material) const {
+        TextureUse use;
+        const auto glossiness = source.extensions.find("KHR_materials_pbrSpecularGlossiness");
+        if (glossiness != source.extensions.end()) {
+            const tinygltf::Value& extension = glossiness->second;
+            if (extension.Has("diffuseFactor"))
+                for (int c = 0; c < 4; ++c)
+                    material.base_color[c] =
+                        static_cast<float>(extension.Get("diffuseFactor").Get(c).GetNumberAsDouble());
+            if (!extension.Has("diffuseTexture")) return use;
+            const tinygltf::Value& info = extension.Get("diffuseTexture");
+            use.texture = info.Get("index").GetNumberAsInt();
+            use.texcoord_set = static_cast<int>(number_or(info, "texCoord", 0.0));
+            const tinygltf::Value nothing{tinygltf::Value::Object{}};
+            const tinygltf::Value& extensions = info.Has("extensions") ? info.Get("extensions") : nothing;
+            if (extensions.Has("KHR_texture_transform"))
+                apply_transform(where_, extensions.Get("KHR_texture_transform"), use);
+            return use;
+        }
+        const auto& roughness = source.pbrMetallicRoughness;
+        for (int c = 0; c < 4; ++c)
+            material.base_color[c] =
+                static_cast<float>(roughness.baseColorFactor[static_cast<std::size_t>(c)]);
+        use.texture = roughness.baseColorTexture.index;
+        use.texcoord_set = roughness.baseColorTexture.texCoord;
+        const auto transform = roughness.baseColorTexture.extensions.find("KHR_texture_transform");
+        if (transform != roughness.baseColorTexture.extensions.end())
+            apply_transform(where_, transform->second, use);
+        return use;
+    }
+
+    [[nodiscard]] Wrap wrap(int value) const {
+        switch (value) {
+            case TINYGLTF_TEXTURE_WRAP_REPEAT:
+                return Wrap::repeat;
+            case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+                return Wrap::mirrored_repeat;
+            case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+                return Wrap::clamp_to_edge;
+            default:
+                fail(where_,
+                     fmt::format("the sampler of its texture has wrap mode {}, which glTF does not know",
+                                 value));
+        }
+    }
+
+    /// Index into Scene::textures, or -1 when the texture has no image.
+    int texture(int index) {
+        const tinygltf::Texture& source = reader_.source.model.textures[static_cast<std::size_t>(index)];
+        if (source.source < 0) {
+            reader_.warn(fmt::format("{}: {} of its base colour names no image that can be read", where_,
+                                     element("texture", static_cast<std::size_t>(index))));
+            return -1;
+        }
+        Texture result;
+        if (source.sampler >= 0) {
+            const tinygltf::Sampler& sampler =
+                reader_.source.model.samplers[static_cast<std::size_t>(source.sampler)];
+            result.wrap_s = wrap(sampler.wrapS);
+            result.wrap_t = wrap(sampler.wrapT);
+        }
+        result.image = image(source.source);
+        const auto key = std::tuple(result.image, result.wrap_s, result.wrap_t);
+        const auto [found, is_new] =
+            textures_.try_emplace(key, static_cast<int>(reader_.scene.textures.size()));
+        if (is_new) reader_.scene.textures.push_back(result);
+        return found->second;
+    }
+
+    /// Index into Scene::images.
+    int image(int index) {
+        const auto [found, is_new] =
+            images_.try_emplace(index, static_cast<int>(reader_.scene.images.size()));
+        if (!is_new) return found->second;
+        const ImageSource& source = reader_.source.images[static_cast<std::size_t>(index)];
+        const std::string name = !source.name.empty()                      ? source.name
+                                 : source.uri && !is_data_uri(*source.uri) ? *source.uri
+                                                                           : std::string();
+        const std::string where =
+            reader_.source.where(element("image", static_cast<std::size_t>(index), name));
+        Image image = decode(where, source);
+        image.name = name;
+        image_bytes_left_ -= image.rgba.size();
+        reader_.scene.images.push_back(std::move(image));
+        return found->second;
+    }
+
+    Image decode(const std::string& where, const ImageSource& source) {
+        if (source.buffer_view >= 0)
+            return decode_image(where, reader_.buffers.view(source.buffer_view), image_bytes_left_);
+        if (!source.uri) fail(where, "it has neither a URI nor a buffer view");
+        const auto file = is_data_uri(*source.uri)
+                              ? decode_data_uri(where, *source.uri)
+                              : read_file(where,
+                                          resolve_uri(where, *source.uri, reader_.source.folder,
+                                                      reader_.source.trust_paths),
+                                          most_file_bytes);
+        return decode_image(where, file, image_bytes_left_);
+    }
+
+    Reader& reader_;
+    std::string where_;
+    std::map<int, int> images_;
+    std::map<std::tuple<int, Wrap, Wrap>, int> textures_;
+    std::uint64_t image_bytes_left_ = most_image_sum_bytes;
+};
+
+}  // namespace
+
+void read_materials(Reader& reader) {
+    Materials materials(reader);
+    for (std::size_t i = 0; i < reader.source.model.materials.size(); ++i)
+        materials.read(i);
+}
+
+}  // namespace cairn::scenes::gltf

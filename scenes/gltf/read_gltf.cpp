@@ -1,0 +1,41 @@
+#include "scenes/gltf/read_gltf.h"
+
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "base/error.h"
+#include "scenes/gltf/failure.h"
+#include "scenes/gltf/reader.h"
+
+namespace cairn::scenes::gltf {
+namespace {
+
+Scene convert(const std::filesystem::path& path, bool trust_paths) {
+    Reader reader(read_source(path, trust_paths));
+    check_extensions(reader);
+    read_materials(reader);
+    read_meshes(reader);
+    read_nodes(reader);
+    check_forest(reader);
+    read_skins(reader);
+    read_animations(reader);
+    return std::move(reader.scene);
+}
+
+}  // namespace
+
+Scene read_gltf(const std::filesystem::path& path, bool trust_paths) {
+    const std::string name = path.filename().string();
+    try {
+        return convert(path, trust_paths);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        fail(name, "it needs more memory than there is", "the file is damaged or too large for this machine");
+    } catch (const std::exception& error) {
+        fail(name, std::string("a library gave up on it: ") + error.what());
+    }
+}
+
+}  // namespace cairn::scenes::gltf

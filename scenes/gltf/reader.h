@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenes/gltf/accessors.h"
+#include "scenes/gltf/buffers.h"
+#include "scenes/gltf/limits.h"
+#include "scenes/gltf/source.h"
+#include "scenes/scene.h"
+
+namespace cairn::scenes::gltf {
+
+/// What the steps of one conversion share. They run in the order in which they are declared below.
+struct Reader {
+    explicit Reader(Source read) : source(std::move(read)) {
+        budget.grant(source.json_bytes + source.glb_chunk.size());
+        scene.name = source.name;
+    }
+    Reader(const Reader&) = delete;
+    Reader& operator=(const Reader&) = delete;
+    Reader(Reader&&) = delete;
+    Reader& operator=(Reader&&) = delete;
+    ~Reader() = default;
+
+    Source source;
+    Budget budget;
+    Buffers buffers{source, budget};
+    Accessors accessors{source, buffers, budget};
+    Scene scene;
+    std::vector<int> texcoord_sets;  ///< for each material: the set of its base colour texture, or -1
+    std::vector<std::uint32_t>
+        joints_needed;  ///< for each mesh: one more than the largest joint that it names
+
+    /// Adds a warning, once.
+    void warn(const std::string& text);
+};
+
+/// @throws Error  extensionsRequired names one that is not supported. Optional ones become warnings.
+void check_extensions(Reader& reader);
+/// Fills Scene::materials, and textures and images as far as base colours use them.
+void read_materials(Reader& reader);
+void read_meshes(Reader& reader);
+/// Fills Scene::nodes, scenes, cameras, lights and skins.
+void read_nodes(Reader& reader);
+/// @throws Error  the nodes are not a forest, or a scene lists a node that is no root.
+void check_forest(Reader& reader);
+void read_skins(Reader& reader);
+void read_animations(Reader& reader);
+
+}  // namespace cairn::scenes::gltf

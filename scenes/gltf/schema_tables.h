@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace cairn::scenes::gltf {
+
+enum class Kind {
+    boolean,
+    string,
+    strings,
+    number,
+    numbers,
+    whole,      ///< 0, 1, 2, ... up to 2^53
+    whole_int,  ///< the same, up to 2^31 - 1: what tinygltf keeps in an int
+    index,      ///< into the array `target`
+    indices,
+    index_map,   ///< an object of indices: the attributes of a primitive
+    index_maps,  ///< its morph targets
+    object,
+    objects,
+};
+
+struct Shape;
+
+/// One property of a JSON object: a row of the glTF 2.0 specification, section 5 (or of an extension's).
+struct Property {
+    const char* name;
+    Kind kind;
+    bool required = false;
+    const char* target = nullptr;   ///< index kinds: JSON pointer to the array that they point into
+    std::size_t length = 0;         ///< numbers: how many; 0 = any
+    const Shape* inside = nullptr;  ///< object, objects
+    const char* label = "";         ///< objects: what messages call one of them
+};
+
+struct Shape {
+    std::span<const Property> properties;
+};
+
+/// The properties that the loader reads, of the whole document.
+[[nodiscard]] const Shape& schema_of_document();
+
+}  // namespace cairn::scenes::gltf

@@ -1,0 +1,118 @@
+#include "scenes/gltf/source.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "scenes/gltf/container.h"
+#include "scenes/gltf/failure.h"
+#include "scenes/gltf/limits.h"
+#include "scenes/gltf/schema.h"
+#include "scenes/gltf/uri.h"
+
+namespace cairn::scenes::gltf {
+namespace {
+
+using nlohmann::json;
+
+/// The first line of a library's message, without "[json.exception.parse_error.101]".
+std::string first_line(std::string text) {
+    if (text.starts_with("[json.exception")) text.erase(0, std::min(text.size(), text.find("] ") + 2));
+    text.resize(std::min({text.size(), text.find('\n'), std::size_t{200}}));
+    for (char& letter : text)
+        if (static_cast<unsigned char>(letter) < 0x20) letter = ' ';
+    return text;
+}
+
+json parse_json(const std::string& name, std::string_view text) {
+    check_json_size(name, text);
+    try {
+        return json::parse(text.begin(), text.end());
+    } catch (const json::exception& error) {
+        fail(name, "its JSON is broken: " + first_line(error.what()));
+    }
+}
+
+void check_version(const std::string& name, const json& document) {
+    const json& asset = document.at("asset");
+    for (const char* key : {"version", "minVersion"}) {
+        if (!asset.contains(key)) continue;
+        const auto& version = asset.at(key).get_ref<const std::string&>();
+        const bool newer_needed = std::string_view(key) == "minVersion" && version != "2.0";
+        if (!version.starts_with("2.") || newer_needed)
+            fail(name, fmt::format("it is glTF of {} {}; only 2.0 is read", key, in_quotes(version)),
+                 "convert it to glTF 2.0");
+    }
+}
+
+json take_array(json& document, const char* key) {
+    json taken = json::array();
+    const auto found = document.find(key);
+    if (found == document.end()) return taken;
+    taken = std::move(*found);
+    document.erase(found);
+    return taken;
+}
+
+std::optional<std::string> take_string(json& object, const char* key) {
+    const auto found = object.find(key);
+    if (found == object.end()) return std::nullopt;
+    return std::move(found->get_ref<std::string&>());
+}
+
+/// Buffers and images leave the document: tinygltf would read and decode them all at once, and crashes on
+/// some.
+void take_buffers_and_images(Source& source, json& document) {
+    for (json& buffer : take_array(document, "buffers"))
+        source.buffers.push_back({take_string(buffer, "uri"), buffer.at("byteLength").get<std::uint64_t>()});
+    for (json& image : take_array(document, "images"))
+        source.images.push_back({take_string(image, "name").value_or(""), take_string(image, "uri"),
+                                 image.contains("bufferView") ? image.at("bufferView").get<int>() : -1});
+}
+
+/// tinygltf refuses index accessors without a buffer view, which Draco and sparse accessors are allowed: they
+/// are lent one that does not exist in the file.
+void lend_views(Source& source, json& document) {
+    if (!document.contains("bufferViews")) document["bufferViews"] = json::array();
+    json& views = document.at("bufferViews");
+    source.no_view = static_cast<int>(views.size());
+    views.push_back({{"buffer", 0}, {"byteLength", 0}});
+    if (!document.contains("accessors")) return;
+    for (json& accessor : document.at("accessors"))
+        if (!accessor.contains("bufferView")) accessor["bufferView"] = source.no_view;
+}
+
+void parse_model(Source& source, const json& document) {
+    const std::string text = document.dump();
+    std::string error;
+    std::string warning;
+    tinygltf::TinyGLTF parser;
+    const bool parsed = parser.LoadASCIIFromString(&source.model, &error, &warning, text.data(),
+                                                   static_cast<unsigned int>(text.size()), "", 0);
+    if (!parsed) fail(source.name, first_line(error.empty() ? "tinygltf refuses it" : error));
+}
+
+}  // namespace
+
+Source read_source(const std::filesystem::path& path, bool trust_paths) {
+    Source source;
+    source.name = path.filename().string();
+    source.folder = path.parent_path();
+    source.trust_paths = trust_paths;
+    source.file = read_file(path.string(), path, most_file_bytes + (1U << 20U));
+    const Container container = split_container(source.name, source.file);
+    source.json_bytes = container.json.size();
+    source.glb_chunk = container.binary;
+    json document = parse_json(source.name, container.json);
+    if (!container.is_glb) std::exchange(source.file, {});
+    check_schema(source.name, document);
+    check_version(source.name, document);
+    take_buffers_and_images(source, document);
+    lend_views(source, document);
+    parse_model(source, document);
+    return source;
+}
+
+}  // namespace cairn::scenes::gltf

@@ -1,0 +1,142 @@
+#include "scenes/gltf/uri.h"
+
+#include <array>
+#include <cctype>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "scenes/gltf/failure.h"
+
+namespace cairn::scenes::gltf {
+namespace {
+
+int hex_digit(char letter) {
+    if (letter >= '0' && letter <= '9') return letter - '0';
+    if (letter >= 'a' && letter <= 'f') return letter - 'a' + 10;
+    if (letter >= 'A' && letter <= 'F') return letter - 'A' + 10;
+    return -1;
+}
+
+/// A % that no two hexadecimal digits follow stands for itself: many exporters forget to encode.
+std::string percent_decoded(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool encoded = text[i] == '%' && i + 2 < text.size() && hex_digit(text[i + 1]) >= 0 &&
+                             hex_digit(text[i + 2]) >= 0;
+        result += encoded ? static_cast<char>(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2])) : text[i];
+        if (encoded) i += 2;
+    }
+    return result;
+}
+
+constexpr std::array<std::int8_t, 256> base64_values() {
+    std::array<std::int8_t, 256> values{};
+    for (auto& value : values)
+        value = -1;
+    for (int i = 0; i < 26; ++i) {
+        values[static_cast<std::size_t>('A' + i)] = static_cast<std::int8_t>(i);
+        values[static_cast<std::size_t>('a' + i)] = static_cast<std::int8_t>(26 + i);
+    }
+    for (int i = 0; i < 10; ++i)
+        values[static_cast<std::size_t>('0' + i)] = static_cast<std::int8_t>(52 + i);
+    values['+'] = 62;
+    values['/'] = 63;
+    return values;
+}
+
+std::vector<std::uint8_t> base64_decoded(const std::string& where, std::string_view text) {
+    static constexpr auto values = base64_values();
+    while (!text.empty() && text.back() == '=')
+        text.remove_suffix(1);
+    std::vector<std::uint8_t> result;
+    result.reserve(text.size() / 4 * 3 + 3);
+    std::uint32_t bits = 0;
+    int bit_count = 0;
+    for (const char letter : text) {
+        const int value = values[static_cast<unsigned char>(letter)];
+        if (value < 0) fail(where, "its data: URI holds a character that is not base64");
+        bits = (bits << 6U) | static_cast<std::uint32_t>(value);
+        bit_count += 6;
+        if (bit_count < 8) continue;
+        bit_count -= 8;
+        result.push_back(static_cast<std::uint8_t>(bits >> static_cast<unsigned>(bit_count)));
+    }
+    return result;
+}
+
+/// RFC 3986, 3.1. One letter is a drive of Windows, and just as unwelcome.
+bool has_scheme(std::string_view uri) {
+    std::size_t i = 0;
+    while (i < uri.size() && (std::isalnum(static_cast<unsigned char>(uri[i])) != 0 || uri[i] == '+' ||
+                              uri[i] == '-' || uri[i] == '.'))
+        ++i;
+    return i > 0 && i < uri.size() && uri[i] == ':' && std::isalpha(static_cast<unsigned char>(uri[0])) != 0;
+}
+
+}  // namespace
+
+bool is_data_uri(std::string_view uri) {
+    constexpr std::string_view scheme = "data:";
+    if (uri.size() < scheme.size()) return false;
+    for (std::size_t i = 0; i < scheme.size(); ++i)
+        if (std::tolower(static_cast<unsigned char>(uri[i])) != scheme[i]) return false;
+    return true;
+}
+
+std::vector<std::uint8_t> decode_data_uri(const std::string& where, std::string_view uri) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos) fail(where, "its data: URI has no comma, hence no data");
+    const std::string_view head = uri.substr(0, comma);
+    const std::string_view body = uri.substr(comma + 1);
+    if (head.ends_with(";base64")) return base64_decoded(where, body);
+    const std::string bytes = percent_decoded(body);
+    return {bytes.begin(), bytes.end()};
+}
+
+std::filesystem::path resolve_uri(const std::string& where, std::string_view uri,
+                                  const std::filesystem::path& folder, bool trust_paths) {
+    if (uri.empty()) fail(where, "its URI is empty");
+    if (has_scheme(uri))
+        fail(where,
+             fmt::format("its URI {} has a scheme; only data: and file names are read", in_quotes(uri)),
+             "save what it points to beside the file and name it there");
+    const std::string decoded = percent_decoded(uri);
+    if (decoded.find('\0') != std::string::npos) fail(where, "its URI holds a zero byte");
+    const auto path = std::filesystem::path(decoded).lexically_normal();
+    if (!trust_paths) {
+        constexpr const char* way_out = "if you trust the file, allow it with --trust-paths";
+        if (path.is_absolute())
+            fail(where, fmt::format("its URI {} is an absolute path", in_quotes(uri)), way_out);
+        if (!path.empty() && *path.begin() == "..")
+            fail(where, fmt::format("its URI {} leaves the folder of the file", in_quotes(uri)), way_out);
+    }
+    return folder / path;
+}
+
+std::vector<std::uint8_t> read_file(const std::string& where, const std::filesystem::path& path,
+                                    std::uint64_t most_bytes) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    const std::string name = in_quotes(path.filename().string());
+    if (!std::filesystem::exists(status))
+        fail(where, fmt::format("there is no file {}", name),
+             "check the name, and that all files were copied together");
+    if (!std::filesystem::is_regular_file(status))
+        fail(where, fmt::format("{} is not a regular file", name), "name a file");
+    const std::uint64_t size = std::filesystem::file_size(path, error);
+    if (error)
+        fail(where, fmt::format("{} cannot be read: {}", name, error.message()), "check its permissions");
+    if (size > most_bytes)
+        fail(where, fmt::format("{} holds {} bytes, the limit is {}", name, size, most_bytes),
+             "split the file");
+    std::ifstream stream(path, std::ios::binary);
+    std::vector<std::uint8_t> bytes(stream ? size : 0);
+    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (!stream || static_cast<std::uint64_t>(stream.gcount()) != size)
+        fail(where, fmt::format("{} cannot be read", name), "check its permissions");
+    return bytes;
+}
+
+}  // namespace cairn::scenes::gltf

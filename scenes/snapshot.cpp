@@ -1,0 +1,173 @@
+#include "scenes/snapshot.h"
+
+#include <cmath>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "scenes/deform.h"
+#include "scenes/pose.h"
+
+namespace cairn::scenes {
+namespace {
+
+/// The vertices that a primitive uses, found once however often it is placed; empty = all of them.
+class UsedVertices {
+public:
+    const std::vector<std::uint32_t>& of(const Primitive& primitive) {
+        const auto [found, is_new] = lists_.try_emplace(&primitive);
+        if (is_new) found->second = find(primitive);
+        return found->second;
+    }
+
+private:
+    static std::vector<std::uint32_t> find(const Primitive& primitive) {
+        std::vector<bool> used(primitive.positions.size(), false);
+        for (const std::uint32_t index : primitive.indices)
+            used[index] = true;
+        std::vector<std::uint32_t> list;
+        for (std::uint32_t i = 0; i < used.size(); ++i)
+            if (used[i]) list.push_back(i);
+        if (list.size() == used.size()) list.clear();
+        return list;
+    }
+
+    std::unordered_map<const Primitive*, std::vector<std::uint32_t>> lists_;
+};
+
+class SnapshotTaker {
+public:
+    SnapshotTaker(const Scene& scene, const Pose& pose) : scene_(scene), pose_(pose) {}
+
+    Snapshot take(const SceneRoots& roots) {
+        std::vector<int> open(roots.nodes.rbegin(), roots.nodes.rend());
+        while (!open.empty()) {
+            const auto index = static_cast<std::size_t>(open.back());
+            open.pop_back();
+            const Node& node = scene_.nodes[index];
+            const glm::dmat4& world = pose_.world_from_node[index];
+            if (node.mesh >= 0) place_mesh(index);
+            if (node.light >= 0)
+                result_.lights.push_back({scene_.lights[static_cast<std::size_t>(node.light)], world});
+            if (node.camera >= 0)
+                result_.cameras.push_back({scene_.cameras[static_cast<std::size_t>(node.camera)], world});
+            open.insert(open.end(), node.children.rbegin(), node.children.rend());
+        }
+        return std::move(result_);
+    }
+
+private:
+    void place_mesh(std::size_t index) {
+        const Node& node = scene_.nodes[index];
+        const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(node.mesh)];
+        const auto& animated = pose_.morph_weights[index];
+        const auto& weights = !animated.empty()             ? animated
+                              : !node.morph_weights.empty() ? node.morph_weights
+                                                            : mesh.morph_weights;
+        const std::vector<glm::dmat4> joints = joint_matrices(node);
+        for (const Primitive& primitive : mesh.primitives) {
+            Item item{&primitive, primitive.positions, primitive.normals, pose_.world_from_node[index]};
+            const bool skinned = !joints.empty() && !primitive.skin.empty();
+            if (skinned || !primitive.morph_targets.empty())
+                deform(item, weights, skinned ? &joints : nullptr);
+            // A skin has put its vertices into the world: glTF lets it pass over the node, and so over
+            // instances.
+            if (skinned || node.instances.empty()) {
+                add(item, index);
+                continue;
+            }
+            for (const Trs& instance : node.instances) {
+                Item copy = item;
+                copy.world_from_mesh = item.world_from_mesh * matrix_of(instance);
+                add(copy, index);
+            }
+        }
+    }
+
+    [[nodiscard]] std::vector<glm::dmat4> joint_matrices(const Node& node) const {
+        if (node.skin < 0) return {};
+        const Skin& skin = scene_.skins[static_cast<std::size_t>(node.skin)];
+        std::vector<glm::dmat4> matrices;
+        matrices.reserve(skin.joints.size());
+        for (std::size_t j = 0; j < skin.joints.size(); ++j)
+            matrices.push_back(pose_.world_from_node[static_cast<std::size_t>(skin.joints[j])] *
+                               skin.joint_from_mesh[j]);
+        return matrices;
+    }
+
+    void deform(Item& item, std::span<const float> weights, const std::vector<glm::dmat4>* joints) {
+        DeformedVertices vertices = morph(*item.primitive, weights);
+        if (joints != nullptr) {
+            skin(*item.primitive, *joints, vertices);
+            item.world_from_mesh = glm::dmat4(1.0);
+        }
+        result_.deformed.push_back(std::move(vertices.positions));
+        item.positions = result_.deformed.back();
+        if (vertices.normals.empty()) return;
+        result_.deformed.push_back(std::move(vertices.normals));
+        item.normals = result_.deformed.back();
+    }
+
+    void add(const Item& item, std::size_t node) {
+        const std::uint64_t count = item.primitive->element_count();
+        switch (item.primitive->topology) {
+            case Topology::triangles:
+                result_.triangle_count += count;
+                break;
+            case Topology::lines:
+                result_.line_count += count;
+                break;
+            case Topology::points:
+                result_.point_count += count;
+                break;
+        }
+        result_.items.push_back(item);
+        if (count == 0) return;
+        const auto& used = used_.of(*item.primitive);
+        const std::size_t vertex_count = used.empty() ? item.positions.size() : used.size();
+        Bounds bounds;
+        double finite_sum = 0.0;  // a single infinity or NaN stays in a sum for ever
+        for (std::size_t i = 0; i < vertex_count; ++i) {
+            const glm::vec3& position = item.positions[used.empty() ? i : used[i]];
+            const glm::dvec3 world(item.world_from_mesh * glm::dvec4(position, 1.0));
+            bounds.add(world);
+            finite_sum += 0.0 * (world.x + world.y + world.z);
+        }
+        if (!std::isfinite(finite_sum))
+            throw Error(Fault::input,
+                        fmt::format("{}: node {} \"{}\"", scene_.name, node, scene_.nodes[node].name),
+                        "its transform, skin or morph targets move a vertex to infinity",
+                        "the file is damaged; export it again");
+        if (!bounds.empty()) {
+            result_.bounds.add(bounds.low);
+            result_.bounds.add(bounds.high);
+        }
+    }
+
+    const Scene& scene_;
+    const Pose& pose_;
+    UsedVertices used_;
+    Snapshot result_;
+};
+
+std::size_t checked(const char* what, int index, std::size_t count, const std::string& scene) {
+    if (index >= 0 && static_cast<std::size_t>(index) < count) return static_cast<std::size_t>(index);
+    throw Error(Fault::usage, scene, fmt::format("there is no {} {}; it has {}", what, index, count),
+                count == 0 ? "leave the option out" : fmt::format("choose 0 to {}", count - 1));
+}
+
+}  // namespace
+
+Snapshot take_snapshot(const Scene& scene, const When& when) {
+    const Animation* animation = nullptr;
+    if (when.animation)
+        animation =
+            &scene.animations[checked("animation", *when.animation, scene.animations.size(), scene.name)];
+    const std::size_t root =
+        checked("scene", when.scene_index.value_or(scene.default_scene), scene.scenes.size(), scene.name);
+    const Pose pose = take_pose(scene, animation, when.seconds);
+    return SnapshotTaker(scene, pose).take(scene.scenes[root]);
+}
+
+}  // namespace cairn::scenes
