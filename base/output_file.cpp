@@ -20,18 +20,24 @@ namespace {
 }  // namespace
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
-    if (std::filesystem::is_directory(path_)) fail(path_, "cannot write", EISDIR);
-    temporary_ = path_;
-    temporary_ += ".part-" + std::to_string(std::random_device{}());
-    file_ = std::fopen(temporary_.c_str(), "wbx");
+    std::error_code ignored;
+    const std::filesystem::file_status there = std::filesystem::status(path_, ignored);
+    if (std::filesystem::is_directory(there)) fail(path_, "cannot write", EISDIR);
+    if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) {
+        file_ = std::fopen(path_.c_str(), "wb");
+    } else {
+        if (std::filesystem::is_symlink(path_, ignored)) path_ = std::filesystem::weakly_canonical(path_);
+        temporary_ = path_;
+        temporary_ += ".part-" + std::to_string(std::random_device{}());
+        file_ = std::fopen(temporary_.c_str(), "wbx");
+    }
     if (file_ == nullptr) fail(path_, "cannot write", errno);
 }
 
 OutputFile::~OutputFile() {
     if (file_ == nullptr) return;
     std::fclose(file_);
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
+    discard();
 }
 
 void OutputFile::write(const void* data, std::size_t size_bytes) {
@@ -46,12 +52,16 @@ void OutputFile::commit() {
     const int code = errno;
     std::error_code failed;
     if (closed == 0) {
-        std::filesystem::rename(temporary_, path_, failed);
+        if (!temporary_.empty()) std::filesystem::rename(temporary_, path_, failed);
         if (!failed) return;
     }
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
+    discard();
     fail(path_, "cannot finish", closed != 0 ? code : failed.value());
+}
+
+void OutputFile::discard() {
+    std::error_code ignored;
+    if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
 }
 
 }  // namespace cairn

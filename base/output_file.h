@@ -7,9 +7,11 @@
 namespace cairn {
 
 /// A file that appears whole or not at all: it is written beside its name and renamed by `commit()`.
-/// Without `commit()` nothing is left behind, and what stood there before stays.
+/// Without `commit()` nothing is left behind, and what stood there before stays. A symbolic link stays one:
+/// what it names is replaced. A device or a pipe (/dev/null) cannot be replaced, so it is written in place.
 ///
-/// @throws Error (Fault::usage) when the folder is missing or not writable, (Fault::memory) when the disk is full.
+/// @throws Error (Fault::usage) when the folder is missing or not writable, (Fault::memory) when the disk is
+/// full.
 class OutputFile {
 public:
     explicit OutputFile(std::filesystem::path path);
@@ -23,8 +25,10 @@ public:
     void commit();
 
 private:
+    void discard();
+
     std::filesystem::path path_;
-    std::filesystem::path temporary_;
+    std::filesystem::path temporary_;  // empty when written in place
     std::FILE* file_ = nullptr;
 };
 

@@ -13,7 +13,8 @@ Buffer::Buffer(std::size_t size_bytes, const std::string& name) : size_bytes_(si
     glNamedBufferStorage(id, GLsizeiptr(size_bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
     // Other errors are bugs, and KHR_debug reports them; this one is the machine's answer to a size.
     if (glGetError() == GL_OUT_OF_MEMORY) {
-        throw Error(Fault::memory, name, fmt::format("the driver has no {:.1f} MiB left", double(size_bytes) / 0x1p20),
+        throw Error(Fault::memory, name,
+                    fmt::format("the driver has no {:.1f} MiB left", double(size_bytes) / 0x1p20),
                     "choose a lower resolution or a smaller pool");
     }
     glObjectLabel(GL_BUFFER, id, GLsizei(std::min<std::size_t>(name.size(), 200)), name.data());
@@ -31,7 +32,9 @@ void Buffer::read(std::size_t offset_bytes, void* data, std::size_t size_bytes) 
     glGetNamedBufferSubData(id(), GLintptr(offset_bytes), GLsizeiptr(size_bytes), data);
 }
 
-void Buffer::fill(std::uint32_t word) { fill(0, size_bytes_, word); }
+void Buffer::fill(std::uint32_t word) {
+    fill(0, size_bytes_, word);
+}
 
 void Buffer::fill(std::size_t offset_bytes, std::size_t size_bytes, std::uint32_t word) {
     if (size_bytes == 0) return;

@@ -11,7 +11,8 @@
 
 namespace cairn::gl {
 
-/// A buffer of fixed size in the driver's memory (glNamedBufferStorage), which the CPU may read and write by copies.
+/// A buffer of fixed size in the driver's memory (glNamedBufferStorage), which the CPU may read and write by
+/// copies.
 class Buffer {
 public:
     Buffer() = default;
@@ -31,7 +32,7 @@ public:
 
     void write(std::size_t offset_bytes, const void* data, std::size_t size_bytes);
     void read(std::size_t offset_bytes, void* data, std::size_t size_bytes) const;
-    void fill(std::uint32_t word);                                                       ///< the whole buffer
+    void fill(std::uint32_t word);  ///< the whole buffer
     void fill(std::size_t offset_bytes, std::size_t size_bytes, std::uint32_t word);
 
     template <typename T>

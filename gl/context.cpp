@@ -53,7 +53,8 @@ std::unique_ptr<Context> create_automatic(bool debug) {
 
 void Context::load_functions(void* (*get_proc_address)(const char*), bool debug) {
     const int version = gladLoadGL(reinterpret_cast<GLADloadfunc>(get_proc_address));
-    if (version == 0) throw Error(Fault::context, std::string(backend()), "the driver gives no OpenGL functions");
+    if (version == 0)
+        throw Error(Fault::context, std::string(backend()), "the driver gives no OpenGL functions");
     if (version < GLAD_MAKE_VERSION(4, 5)) {
         throw Error(Fault::context, fmt::format("driver \"{}\"", text_of(GL_RENDERER)),
                     fmt::format("OpenGL 4.5 core is needed, it offers {}", text_of(GL_VERSION)),
@@ -64,14 +65,19 @@ void Context::load_functions(void* (*get_proc_address)(const char*), bool debug)
 
 std::unique_ptr<Context> create_context(const ContextOptions& options) {
     switch (options.kind) {
-        case ContextKind::osmesa: return create_osmesa_context(options.debug);
-        case ContextKind::egl: return create_egl_context(options.debug);
-        case ContextKind::automatic: break;
+        case ContextKind::osmesa:
+            return create_osmesa_context(options.debug);
+        case ContextKind::egl:
+            return create_egl_context(options.debug);
+        case ContextKind::automatic:
+            break;
     }
     return create_automatic(options.debug);
 }
 
-std::string driver_name() { return fmt::format("{}, OpenGL {}", text_of(GL_RENDERER), text_of(GL_VERSION)); }
+std::string driver_name() {
+    return fmt::format("{}, OpenGL {}", text_of(GL_RENDERER), text_of(GL_VERSION));
+}
 
 bool is_software_driver() {
     const std::string_view renderer = text_of(GL_RENDERER);

@@ -46,10 +46,12 @@ private:
     std::unique_ptr<DebugLog> debug_log_ = std::make_unique<DebugLog>();
 };
 
-/// @throws Error  Fault::context: nothing offers OpenGL 4.5; the message says what was tried and what each offers.
+/// @throws Error  Fault::context: nothing offers OpenGL 4.5; the message says what was tried and what each
+/// offers.
 [[nodiscard]] std::unique_ptr<Context> create_context(const ContextOptions& options = {});
 
-/// GL_RENDERER and the version of the current context: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core Profile) Mesa 22.3.6".
+/// GL_RENDERER and the version of the current context: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core
+/// Profile) Mesa 22.3.6".
 [[nodiscard]] std::string driver_name();
 
 /// True when the current context rasterizes on the CPU: its times say nothing about a GPU.

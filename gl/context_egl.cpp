@@ -1,10 +1,9 @@
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
-
 #include <array>
 #include <string>
 #include <vector>
 
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -63,10 +62,12 @@ std::vector<EGLDisplay> candidate_displays(const Egl& egl) {
         std::array<EGLDeviceEXT, 16> devices{};
         EGLint count = 0;
         if (query != nullptr && query(EGLint(devices.size()), devices.data(), &count) == EGL_TRUE) {
-            for (EGLint i = 0; i < count; ++i) add(EGL_PLATFORM_DEVICE_EXT, devices[std::size_t(i)]);
+            for (EGLint i = 0; i < count; ++i)
+                add(EGL_PLATFORM_DEVICE_EXT, devices[std::size_t(i)]);
         }
     }
-    if (egl.client_has("EGL_MESA_platform_surfaceless")) add(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
+    if (egl.client_has("EGL_MESA_platform_surfaceless"))
+        add(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
     return displays;
 }
 
@@ -102,12 +103,10 @@ private:
 
     void create(bool debug) {
         if (egl_.bind_api(EGL_OPENGL_API) != EGL_TRUE) refuse("it offers no desktop OpenGL");
-        std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION,
-                                          4,
-                                          EGL_CONTEXT_MINOR_VERSION,
-                                          5,
-                                          EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                          EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+        std::vector<EGLint> attributes = {
+            EGL_CONTEXT_MAJOR_VERSION,       4,
+            EGL_CONTEXT_MINOR_VERSION,       5,
+            EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
         if (debug) attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
         attributes.push_back(EGL_NONE);
         context_ = egl_.create_context(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());

@@ -1,6 +1,6 @@
-#include <GL/osmesa.h>
-
 #include <array>
+
+#include <GL/osmesa.h>
 
 #include "base/error.h"
 #include "gl/context_backends.h"
@@ -11,12 +11,18 @@ namespace {
 
 class OsmesaContext final : public Context {
 public:
-    explicit OsmesaContext(bool debug) : library_({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6") {
-        const std::array<int, 11> attributes = {OSMESA_FORMAT,                OSMESA_RGBA,
-                                                OSMESA_DEPTH_BITS,            0,
-                                                OSMESA_PROFILE,               OSMESA_CORE_PROFILE,
-                                                OSMESA_CONTEXT_MAJOR_VERSION, 4,
-                                                OSMESA_CONTEXT_MINOR_VERSION, 5,
+    explicit OsmesaContext(bool debug)
+        : library_({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6") {
+        const std::array<int, 11> attributes = {OSMESA_FORMAT,
+                                                OSMESA_RGBA,
+                                                OSMESA_DEPTH_BITS,
+                                                0,
+                                                OSMESA_PROFILE,
+                                                OSMESA_CORE_PROFILE,
+                                                OSMESA_CONTEXT_MAJOR_VERSION,
+                                                4,
+                                                OSMESA_CONTEXT_MINOR_VERSION,
+                                                5,
                                                 0};
         const auto create =
             library_.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
@@ -27,10 +33,9 @@ public:
         }
         try {
             OsmesaContext::make_current();
-            load_functions(
-                reinterpret_cast<void* (*)(const char*)>(
-                    library_.function<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress")),
-                debug);
+            load_functions(reinterpret_cast<void* (*)(const char*)>(
+                               library_.function<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress")),
+                           debug);
         } catch (...) {
             destroy();
             throw;
@@ -61,6 +66,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Context> create_osmesa_context(bool debug) { return std::make_unique<OsmesaContext>(debug); }
+std::unique_ptr<Context> create_osmesa_context(bool debug) {
+    return std::make_unique<OsmesaContext>(debug);
+}
 
 }  // namespace cairn::gl

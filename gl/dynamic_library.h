@@ -1,9 +1,9 @@
 #pragma once
 
-#include <dlfcn.h>
-
 #include <initializer_list>
 #include <string>
+
+#include <dlfcn.h>
 
 #include "base/error.h"
 

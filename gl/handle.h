@@ -29,13 +29,27 @@ private:
 };
 
 namespace detail {
-inline void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
-inline void delete_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
-inline void delete_program(GLuint id) { glDeleteProgram(id); }
-inline void delete_query(GLuint id) { glDeleteQueries(1, &id); }
-inline void delete_shader(GLuint id) { glDeleteShader(id); }
-inline void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
-inline void delete_vertex_array(GLuint id) { glDeleteVertexArrays(1, &id); }
+inline void delete_buffer(GLuint id) {
+    glDeleteBuffers(1, &id);
+}
+inline void delete_framebuffer(GLuint id) {
+    glDeleteFramebuffers(1, &id);
+}
+inline void delete_program(GLuint id) {
+    glDeleteProgram(id);
+}
+inline void delete_query(GLuint id) {
+    glDeleteQueries(1, &id);
+}
+inline void delete_shader(GLuint id) {
+    glDeleteShader(id);
+}
+inline void delete_texture(GLuint id) {
+    glDeleteTextures(1, &id);
+}
+inline void delete_vertex_array(GLuint id) {
+    glDeleteVertexArrays(1, &id);
+}
 }  // namespace detail
 
 using BufferHandle = Handle<detail::delete_buffer>;

@@ -38,7 +38,8 @@ std::string with_file_names(const std::string& log, const ResolvedSource& source
     return out;
 }
 
-ShaderHandle compile(GLenum stage, const ShaderSource& source, std::string_view name, const Defines& defines) {
+ShaderHandle compile(GLenum stage, const ShaderSource& source, std::string_view name,
+                     const Defines& defines) {
     const ResolvedSource resolved = source.resolve(name, defines);
     ShaderHandle shader(glCreateShader(stage));
     const char* text = resolved.text.c_str();

@@ -34,14 +34,17 @@ private:
 
 /// Compiles and links one compute shader.
 /// @throws Error (Fault::context) with the driver's message, its file numbers replaced by names.
-[[nodiscard]] Program build_compute(const ShaderSource& source, std::string_view name, const Defines& defines = {});
+[[nodiscard]] Program build_compute(const ShaderSource& source, std::string_view name,
+                                    const Defines& defines = {});
 
 /// Compiles and links a vertex and a fragment shader, and a geometry shader when its name is not empty.
-[[nodiscard]] Program build_raster(const ShaderSource& source, std::string_view vertex, std::string_view fragment,
-                                   std::string_view geometry = {}, const Defines& defines = {});
+[[nodiscard]] Program build_raster(const ShaderSource& source, std::string_view vertex,
+                                   std::string_view fragment, std::string_view geometry = {},
+                                   const Defines& defines = {});
 
-/// Dispatches at least `threads` threads of the bound compute program, folded over x and y where one axis is too short:
-/// shaders take their index as gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * group_size.
+/// Dispatches at least `threads` threads of the bound compute program, folded over x and y where one axis is
+/// too short: shaders take their index as gl_GlobalInvocationID.x + gl_GlobalInvocationID.y *
+/// gl_NumWorkGroups.x * group_size.
 void dispatch_threads(std::size_t threads, unsigned group_size);
 
 }  // namespace cairn::gl

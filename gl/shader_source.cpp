@@ -68,7 +68,8 @@ void ShaderSource::append(std::string_view name, const std::string& from, Resolv
 ResolvedSource ShaderSource::resolve(std::string_view name, const Defines& defines) const {
     ResolvedSource out;
     out.text = "#version 450 core\n";
-    for (const auto& [key, value] : defines) out.text += fmt::format("#define {} {}\n", key, value);
+    for (const auto& [key, value] : defines)
+        out.text += fmt::format("#define {} {}\n", key, value);
     append(name, "", out);
     return out;
 }

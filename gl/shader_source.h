@@ -12,11 +12,12 @@ namespace cairn::gl {
 /// Preprocessor definitions put before a shader's text: {"TREE_N", "4"}.
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
-/// A shader after its #includes: one text for the driver, and the names behind the numbers in its #line directives.
+/// A shader after its #includes: one text for the driver, and the names behind the numbers in its #line
+/// directives.
 struct ResolvedSource {
     std::string text;
-    std::vector<std::string> files;                ///< file i of "#line n i"
-    std::vector<std::string> included_from;        ///< "march/shadow.comp.glsl:1", empty for the first file
+    std::vector<std::string> files;          ///< file i of "#line n i"
+    std::vector<std::string> included_from;  ///< "march/shadow.comp.glsl:1", empty for the first file
 };
 
 /// Where shader text comes from: the copies inside the library, or a folder read anew each time.
@@ -25,7 +26,8 @@ public:
     ShaderSource() = default;
     explicit ShaderSource(std::optional<std::filesystem::path> folder) : folder_(std::move(folder)) {}
 
-    /// Resolves `#include "folder/file.glsl"` (each file once, names relative to shaders/) and adds #version 450 core.
+    /// Resolves `#include "folder/file.glsl"` (each file once, names relative to shaders/) and adds #version
+    /// 450 core.
     /// @throws Error (Fault::input) naming file and line when a file does not exist.
     [[nodiscard]] ResolvedSource resolve(std::string_view name, const Defines& defines = {}) const;
 

@@ -8,8 +8,12 @@ Timer::Timer() {
     query_ = QueryHandle(id);
 }
 
-void Timer::start() const { glBeginQuery(GL_TIME_ELAPSED, query_.id()); }
-void Timer::stop() const { glEndQuery(GL_TIME_ELAPSED); }
+void Timer::start() const {
+    glBeginQuery(GL_TIME_ELAPSED, query_.id());
+}
+void Timer::stop() const {
+    glEndQuery(GL_TIME_ELAPSED);
+}
 
 double Timer::milliseconds() const {
     GLuint64 nanoseconds = 0;

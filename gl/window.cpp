@@ -1,9 +1,9 @@
 #include "gl/window.h"
 
 #define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-
 #include <string>
+
+#include <GLFW/glfw3.h>
 
 #include "base/error.h"
 
@@ -13,7 +13,8 @@ namespace {
 [[noreturn]] void refuse(const char* what) {
     const char* detail = nullptr;
     glfwGetError(&detail);
-    throw Error(Fault::context, "GLFW", std::string(what) + (detail != nullptr ? std::string(": ") + detail : ""),
+    throw Error(Fault::context, "GLFW",
+                std::string(what) + (detail != nullptr ? std::string(": ") + detail : ""),
                 "without a display use cairn render, which needs no window");
 }
 

@@ -22,6 +22,7 @@ public:
 };
 
 /// @throws Error (Fault::context) when there is no display, or its driver offers no OpenGL 4.5.
-[[nodiscard]] std::unique_ptr<Window> create_window(const std::string& title, glm::ivec2 size, bool debug = false);
+[[nodiscard]] std::unique_ptr<Window> create_window(const std::string& title, glm::ivec2 size,
+                                                    bool debug = false);
 
 }  // namespace cairn::gl

@@ -29,35 +29,37 @@ struct Camera {
 /// One light, white by default.
 struct Light {
     bool positional = false;
-    glm::dvec3 position{0.0};              ///< world, when positional
-    glm::dvec3 towards{0.4, 0.8, 0.45};    ///< direction to the light, when not
+    glm::dvec3 position{0.0};            ///< world, when positional
+    glm::dvec3 towards{0.4, 0.8, 0.45};  ///< direction to the light, when not
     glm::vec3 color{1.0F};
-    float ambient = 0.25F;                 ///< light from everywhere, as a share of the light's own
+    float ambient = 0.25F;  ///< light from everywhere, as a share of the light's own
 };
 
 enum class Shadow : std::uint8_t { none, hard };
 
 struct View {
-    int width = 512;   ///< pixels, [1, 16384]
+    int width = 512;  ///< pixels, [1, 16384]
     int height = 512;
     Camera camera;
     Light light;
     Shadow shadow = Shadow::hard;
     glm::vec3 background{0.80F, 0.84F, 0.90F};  ///< linear
-    /// A ray stops descending where a voxel is narrower than this many pixels (Crassin et al. 2008, section 4.3).
+    /// A ray stops descending where a voxel is narrower than this many pixels (Crassin et al. 2008,
+    /// section 4.3).
     double pixel_error = 1.0;
 };
 
 /// The shape of the N^3-tree and the bounds of its caches (Crassin et al. 2008, section 4).
 struct TreeOptions {
-    int n = 4;                                   ///< children an axis: 2 or 4
-    int m = 16;                                  ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
-    int max_resolution = 8192;                   ///< voxels across the root cube that rays may ask for
+    int n = 4;                  ///< children an axis: 2 or 4
+    int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
+    int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 128U << 20U;
 };
 
-/// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended in).
+/// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended
+/// in).
 struct Image {
     int width = 0;
     int height = 0;
@@ -67,8 +69,8 @@ struct Image {
 /// Counters of one `render()`.
 struct FrameStatistics {
     double milliseconds = 0.0;
-    int passes = 0;                     ///< ray-marching passes until nothing was missing
-    std::uint64_t tile_queries = 0;     ///< misses that rays reported
+    int passes = 0;                  ///< ray-marching passes until nothing was missing
+    std::uint64_t tile_queries = 0;  ///< misses that rays reported
     std::uint64_t nodes_subdivided = 0;
     std::uint64_t bricks_produced = 0;
     std::uint64_t bricks_evicted = 0;
@@ -80,14 +82,16 @@ struct FrameStatistics {
     std::size_t brick_pool_bytes = 0;
 };
 
-/// Renders a scene through its voxel cache. Only what rays prove visible is voxelized, no finer than a pixel shows.
-/// Bricks stay in the pools from one frame to the next. Needs the context that was current at its construction.
+/// Renders a scene through its voxel cache. Only what rays prove visible is voxelized, no finer than a pixel
+/// shows. Bricks stay in the pools from one frame to the next. Needs the context that was current at its
+/// construction.
 ///
 /// The picture depends on the view alone: not on the pools' sizes, nor on what earlier frames left in them.
 class Renderer {
 public:
     /// The scene and the snapshot are not needed afterwards.
-    /// @throws Error  Fault::usage for a tree shape or a pool that cannot work; Fault::memory when it does not fit.
+    /// @throws Error  Fault::usage for a tree shape or a pool that cannot work; Fault::memory when it does
+    /// not fit.
     Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options = {},
              const gl::ShaderSource& shaders = {});
     Renderer(Renderer&&) noexcept;

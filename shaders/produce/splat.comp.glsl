@@ -60,32 +60,31 @@ SurfacePoint point_under(Patch s, vec3 lattice) {
 }
 
 // The marks of the triangle in the four finer voxels of one row inside brick voxel `v`, from bit 0.
-uint row_bits(ExactTriangle t, uint triangle, ivec3 v, ivec2 row, int fine_shift) {
-    ivec2 span = row_span(t, row, fine_shift);
+uint row_bits(ExactTriangle fine, uint triangle, ivec3 v, ivec2 row) {
+    ivec2 span = row_span(fine, row);
     span = ivec2(max(span.x, 4 * v.x), min(span.y, 4 * v.x + 3));
     if (span.x > span.y) return 0u;
     uint bits = ((2u << uint(span.y - span.x)) - 1u) << uint(span.x - 4 * v.x);
 #if HAS_MASK
     for (int x = span.x; x <= span.y; ++x) {
-        if (!mask_touches(triangle, ivec3(x, row), fine_shift)) bits &= ~(1u << uint(x - 4 * v.x));
+        if (!mask_touches(triangle, ivec3(x, row), fine.shift)) bits &= ~(1u << uint(x - 4 * v.x));
     }
 #endif
     return bits;
 }
 
 // Marks one brick voxel; `v` in voxels of the root cube, `word` its place in the scratch.
-void splat(ExactTriangle t, Patch s, uint triangle, ivec3 v, int fine_shift, ivec3 fine_low, ivec3 fine_high,
-           uint word) {
-    const float fine_side = float(1 << fine_shift);
+void splat(ExactTriangle fine, Patch s, uint triangle, ivec3 v, uint word) {
+    const float fine_side = float(1 << fine.shift);
     uvec2 mask = uvec2(0u);
     float weight = 0.0;
     vec3 normal = vec3(0.0);
     vec3 color = vec3(0.0);
-    const ivec2 row_low = max(4 * v.yz, fine_low.yz);
-    const ivec2 row_high = min(4 * v.yz + 3, fine_high.yz);
+    const ivec2 row_low = max(4 * v.yz, fine.low.yz);
+    const ivec2 row_high = min(4 * v.yz + 3, fine.high.yz);
     for (int z = row_low.y; z <= row_high.y; ++z) {
         for (int y = row_low.x; y <= row_high.x; ++y) {
-            const uint bits = row_bits(t, triangle, v, ivec2(y, z), fine_shift);
+            const uint bits = row_bits(fine, triangle, v, ivec2(y, z));
             if (bits == 0u) continue;
             const int place = 4 * (y & 3) + 16 * (z & 1);
             if ((z & 2) == 0) mask.x |= bits << place;
@@ -126,27 +125,24 @@ void main() {
     const int slice_count = int(pairs[i].tile_slices >> 24);
     const BrickTile tile = tiles[tile_index];
     const int shift = tile.low_shift.w;
-    const int fine_shift = shift - 2;
 
-    const uvec4 corners = triangles[triangle].vertices_material;
+    const uvec4 corners = surface_triangles[triangle].vertices_material;
     const ivec3 a = surface_position(corners.x);
     const ivec3 b = surface_position(corners.y);
     const ivec3 c = surface_position(corners.z);
-    const ExactTriangle t = exact_triangle(a, b, c);
-    const Patch s = make_patch(corners.xyz, materials[corners.w], a, b, c);
+    const ExactTriangle coarse = exact_triangle(a, b, c, shift);
+    const ExactTriangle fine = exact_triangle(a, b, c, shift - 2);
+    const Patch s = make_patch(corners.xyz, surface_materials[corners.w], a, b, c);
 
     const ivec3 region_low = tile.low_shift.xyz - 1;
-    ivec3 low, high, fine_low, fine_high;
-    triangle_rows(t, shift, low, high);
-    triangle_rows(t, fine_shift, fine_low, fine_high);
-    low = max(low, region_low + ivec3(0, 0, first_slice));
-    high = min(high, region_low + ivec3(SIDE - 1, SIDE - 1, first_slice + slice_count - 1));
+    const ivec3 low = max(coarse.low, region_low + ivec3(0, 0, first_slice));
+    const ivec3 high = min(coarse.high, region_low + ivec3(SIDE - 1, SIDE - 1, first_slice + slice_count - 1));
     for (int z = low.z; z <= high.z; ++z) {
         for (int y = low.y; y <= high.y; ++y) {
-            const ivec2 span = row_span(t, ivec2(y, z), shift);
+            const ivec2 span = row_span(coarse, ivec2(y, z));
             for (int x = max(span.x, low.x); x <= min(span.y, high.x); ++x) {
                 const ivec3 v = ivec3(x, y, z);
-                splat(t, s, triangle, v, fine_shift, fine_low, fine_high, scratch_word(tile_index, v - region_low));
+                splat(fine, s, triangle, v, scratch_word(tile_index, v - region_low));
             }
         }
     }

@@ -31,6 +31,23 @@ vec3 normal_at(SurfacePoint p, vec3 triangle_normal) {
 }
 
 #if HAS_COLOR
+layout(std430, binding = SSBO_SURFACE_TEXELS) readonly buffer TexelBlock { uint texels[]; };
+
+// A texel's number along one axis, by glTF's wrap modes (MATERIAL_WRAP_*).
+uint wrapped(float coordinate, uint size, uint mode) {
+    const float n = float(size);
+    if (mode == 2u) return uint(clamp(floor(coordinate * n), 0.0, n - 1.0));
+    float unit = fract(coordinate);
+    if (mode == 1u && mod(floor(coordinate), 2.0) == 1.0) unit = 1.0 - unit;
+    return uint(clamp(floor(unit * n), 0.0, n - 1.0));
+}
+
+vec4 nearest_texel(SurfaceMaterial material, vec2 uv) {
+    const uint x = wrapped(uv.x, material.width, material.flags >> MATERIAL_WRAP_S_SHIFT & 3u);
+    const uint y = wrapped(uv.y, material.height, material.flags >> MATERIAL_WRAP_T_SHIFT & 3u);
+    return unpackUnorm4x8(texels[material.texel_offset + y * material.width + x]);
+}
+
 vec3 color_at(SurfacePoint p, SurfaceMaterial material) {
     vec3 color = material.base_color.rgb;
     color *= p.weights.x * unpackUnorm4x8(attributes[p.vertices.x].color).rgb +

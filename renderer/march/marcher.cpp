@@ -1,0 +1,113 @@
+#include "renderer/march/marcher.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "gl/limits.h"
+#include "shaders/interop/bindings.h"
+#include "shaders/interop/config.h"
+
+namespace cairn::renderer {
+namespace {
+
+constexpr unsigned group_size = 64;
+constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
+
+}  // namespace
+
+Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders)
+    : primary_(gl::build_compute(shaders, "march/primary.comp.glsl", shape.defines(has_color))),
+      shadow_(gl::build_compute(shaders, "march/shadow.comp.glsl", shape.defines(has_color))),
+      view_(sizeof(interop::MarchView), "view"),
+      queries_(query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t), "tile query buffer") {}
+
+void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool) {
+    size_ = glm::ivec2(view.size_shadow.x, view.size_shadow.y);
+    const auto pixels = std::size_t(size_.x) * std::size_t(size_.y);
+    if (pixels > capacity_) {
+        if (pixels * sizeof(interop::RayState) > gl::query_limits().shader_storage_bytes) {
+            throw Error(Fault::memory, "picture", "its ray states pass the driver's buffer limit",
+                        "choose a smaller --size");
+        }
+        rays_ = gl::Buffer(pixels * sizeof(interop::RayState), "ray states");
+        lists_ = gl::Buffer(pixels * 4 * sizeof(std::uint32_t), "ray lists");
+        image_ = gl::Buffer(pixels * sizeof(std::uint32_t), "picture");
+        capacity_ = pixels;
+    }
+    query_bits_offset_ = std::uint32_t(pool.slot_count());
+    const std::size_t usage_words = query_bits_offset_ + (2 * std::size_t(tree.entry_count()) + 31) / 32;
+    if (usage_.size_bytes() != usage_words * sizeof(std::uint32_t)) {
+        usage_ = gl::Buffer(usage_words * sizeof(std::uint32_t), "brick usage");
+        usage_.fill(0);
+    }
+    view_.write(0, &view, sizeof(view));
+    first_pass_ = true;
+    waiting_primary_ = 0;
+    waiting_shadow_ = 0;
+}
+
+PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool) {
+    usage_.fill(query_bits_offset_ * sizeof(std::uint32_t),
+                usage_.size_bytes() - query_bits_offset_ * sizeof(std::uint32_t), 0);
+    queries_.fill(0, query_header_bytes, 0);
+    view_.bind_uniform(UBO_VIEW);
+    rays_.bind_storage(SSBO_RAYS);
+    lists_.bind_storage(SSBO_LISTS);
+    queries_.bind_storage(SSBO_QUERIES);
+    usage_.bind_storage(SSBO_USAGE);
+    image_.bind_storage(SSBO_IMAGE);
+    tree.bind_for_reading();
+    pool.bind_for_reading();
+
+    const std::uint32_t old_shadow = waiting_shadow_;
+    const glm::ivec2 blocks = (size_ + 7) / 8;
+    // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
+    if (old_shadow != 0) run(shadow_, old_shadow, false, round, pool);
+    const std::uint32_t primary = first_pass_ ? std::uint32_t(blocks.x * blocks.y) * 64U : waiting_primary_;
+    if (primary != 0) run(primary_, primary, first_pass_, round, pool);
+    first_pass_ = false;
+    list_side_ ^= 1;
+
+    const interop::MarchCounters counters = read_counters();
+    if (counters.step_limit_hits != 0) {
+        throw Error(Fault::context, "ray-marcher", "a ray did not come to an end",
+                    "this is a fault of Cairn: please report the scene and the view");
+    }
+    PassResult result;
+    result.waiting_primary = waiting_primary_ = counters.waiting_primary;
+    result.waiting_shadow = waiting_shadow_ = counters.waiting_shadow;
+    result.queries = queries_.read_all<std::uint32_t>(std::min<std::size_t>(counters.queries, QUERY_CAPACITY),
+                                                      query_header_bytes);
+    result.brick_stamps = usage_.read_all<std::uint32_t>(std::size_t(pool.slot_count()));
+    return result;
+}
+
+void Marcher::run(const gl::Program& program, std::uint32_t rays, bool first_pass, std::uint32_t round,
+                  const BrickPool& pool) {
+    // Four lists of `capacity_` pixels: primary in and out, shadow in and out, changing sides each pass.
+    auto list = [&](int kind, int side) { return unsigned(std::size_t(2 * kind + side) * capacity_); };
+    const int kind = &program == &shadow_ ? 1 : 0;
+    program.set("ray_count", rays);
+    program.set("first_pass", int(first_pass));
+    program.set("list_in", list(kind, list_side_));
+    program.set("list_out", list(kind, list_side_ ^ 1));
+    program.set("shadow_list", list(1, list_side_ ^ 1));
+    program.set("pass_number", round);
+    program.set("usage_query_offset", query_bits_offset_);
+    program.set("pool_slots", pool.slots());
+    program.use();
+    gl::dispatch_threads(rays, group_size);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+interop::MarchCounters Marcher::read_counters() const {
+    interop::MarchCounters counters{};
+    queries_.read(0, &counters, sizeof(counters));
+    return counters;
+}
+
+std::vector<std::uint8_t> Marcher::read_image() const {
+    return image_.read_all<std::uint8_t>(std::size_t(size_.x) * std::size_t(size_.y) * 4);
+}
+
+}  // namespace cairn::renderer

@@ -1,0 +1,100 @@
+#include "renderer/pool/brick_pool.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "gl/limits.h"
+#include "shaders/interop/bindings.h"
+
+namespace cairn::renderer {
+namespace {
+
+gl::TextureHandle make_texture(GLenum format, glm::ivec3 size, GLint filter) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_3D, 1, &id);
+    gl::TextureHandle texture(id);
+    glTextureStorage3D(id, 1, format, size.x, size.y, size.z);
+    if (glGetError() == GL_OUT_OF_MEMORY) {
+        throw Error(Fault::memory, "brick pool", "the driver has no room for it",
+                    "choose a smaller --brick-pool");
+    }
+    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, filter);
+    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, filter);
+    for (GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R}) {
+        glTextureParameteri(id, axis, GL_CLAMP_TO_EDGE);
+    }
+    return texture;
+}
+
+/// A box of at least `count` slots, as near to a cube as it can, no side past `most`.
+glm::ivec3 box_of(int count, int most) {
+    glm::ivec3 box;
+    box.x = std::min(most, int(std::ceil(std::cbrt(double(count)))));
+    box.y = std::min(most, int(std::ceil(std::sqrt(double(count) / box.x))));
+    box.z = std::min(most, (count + box.x * box.y - 1) / (box.x * box.y));
+    return box;
+}
+
+}  // namespace
+
+BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
+    : has_color_(has_color), side_(shape.m + 2) {
+    const std::size_t blocks = std::size_t(shape.m / 4) * std::size_t(shape.m / 4) * std::size_t(shape.m / 4);
+    const std::size_t mask_words = blocks + (blocks + 63) / 64;
+    const std::size_t texels = std::size_t(side_) * std::size_t(side_) * std::size_t(side_);
+    const std::size_t slot_bytes = texels * (has_color ? 8 : 5) + mask_words * 8;
+    const gl::Limits limits = gl::query_limits();
+    const int most_a_side = limits.texture_3d_size / side_;
+    const std::size_t most_masks =
+        std::min(limits.texture_buffer_texels, limits.shader_storage_bytes / 8) / mask_words;
+    const std::size_t most = std::min<std::size_t>({bytes / slot_bytes, most_masks, 1U << 22U});
+    if (most == 0) {
+        throw Error(Fault::usage, "brick pool",
+                    fmt::format("{:.2f} MiB hold no brick of {}^3 voxels", double(bytes) / 0x1p20, shape.m),
+                    fmt::format("give it at least {:.2f} MiB", double(slot_bytes) / 0x1p20));
+    }
+    // The box is a little larger than asked for unless one row is taken away.
+    slots_ = box_of(int(most), most_a_side);
+    slot_count_ = std::min(int(most), slots_.x * slots_.y * slots_.z);
+    while (std::size_t(slots_.x) * std::size_t(slots_.y) * std::size_t(slots_.z) * slot_bytes > bytes &&
+           slots_.z > 1) {
+        --slots_.z;
+        slot_count_ = slots_.x * slots_.y * slots_.z;
+    }
+    if (slots_.z == 1 && slot_count_ < slots_.x * slots_.y) {
+        slots_ = {std::min(slot_count_, most_a_side), 1, 1};
+        slot_count_ = slots_.x;
+    }
+
+    const glm::ivec3 size = slots_ * side_;
+    color_ = make_texture(has_color ? GL_RGBA8 : GL_R8, size, GL_LINEAR);
+    normal_ = make_texture(GL_RGB10_A2, size, GL_LINEAR);
+    masks_ = gl::Buffer(std::size_t(slot_count_) * mask_words * 8, "brick masks");
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    mask_texture_ = gl::TextureHandle(id);
+    glTextureBuffer(id, GL_RG32UI, masks_.id());
+    size_bytes_ = std::size_t(slot_count_) * slot_bytes;
+}
+
+glm::ivec3 BrickPool::first_texel(int slot) const {
+    return glm::ivec3(slot % slots_.x, slot / slots_.x % slots_.y, slot / (slots_.x * slots_.y)) * side_;
+}
+
+void BrickPool::bind_for_reading() const {
+    glBindTextureUnit(TEXTURE_BRICK_MASKS, mask_texture_.id());
+    glBindTextureUnit(TEXTURE_BRICK_COLOR, color_.id());
+    glBindTextureUnit(TEXTURE_BRICK_NORMAL, normal_.id());
+}
+
+void BrickPool::bind_for_writing() const {
+    glBindImageTexture(IMAGE_BRICK_COLOR, color_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
+                       has_color_ ? GL_RGBA8 : GL_R8);
+    glBindImageTexture(IMAGE_BRICK_NORMAL, normal_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGB10_A2);
+    masks_.bind_storage(SSBO_BRICK_MASKS);
+}
+
+}  // namespace cairn::renderer

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace cairn::renderer {
+
+/// Which of a fixed number of places to use next: a free one, else the one not used for longest
+/// (Crassin et al. 2008, section 4.3).
+///
+/// Time is counted in rounds: one round is one pass of rays and the production that follows it. What was
+/// given out or pinned in the current round is never taken away in it.
+class Lru {
+public:
+    explicit Lru(int count) : stamps_(std::size_t(count), 0) {
+        free_.reserve(std::size_t(count));
+        for (int i = count - 1; i >= 0; --i)
+            free_.push_back(i);
+    }
+
+    [[nodiscard]] int count() const { return int(stamps_.size()); }
+    [[nodiscard]] int used_count() const { return count() - int(free_.size()); }
+
+    /// The place was used in this round.
+    void touch(int place, std::uint32_t round) { stamps_[std::size_t(place)] = round; }
+    [[nodiscard]] std::uint32_t stamp(int place) const { return stamps_[std::size_t(place)]; }
+
+    /// Takes a free place, or returns -1.
+    [[nodiscard]] int take_free() {
+        if (free_.empty()) return -1;
+        const int place = free_.back();
+        free_.pop_back();
+        return place;
+    }
+    void release(int place) { free_.push_back(place); }
+
+private:
+    std::vector<std::uint32_t> stamps_;
+    std::vector<int> free_;
+};
+
+}  // namespace cairn::renderer

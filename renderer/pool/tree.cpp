@@ -1,0 +1,212 @@
+#include "renderer/pool/tree.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "gl/limits.h"
+#include "shaders/interop/bindings.h"
+
+namespace cairn::renderer {
+namespace {
+
+int block_count(const TreeShape& shape, std::size_t bytes) {
+    const gl::Limits limits = gl::query_limits();
+    const std::size_t block_bytes = std::size_t(shape.child_count()) * sizeof(interop::NodeEntry);
+    const std::size_t most =
+        std::min({bytes / block_bytes, limits.texture_buffer_texels / std::size_t(shape.child_count()),
+                  std::size_t(1) << 24U});
+    const std::size_t least = std::size_t(shape.max_level) + 2;
+    if (most < least) {
+        throw Error(Fault::usage, "node pool", fmt::format("{} bytes are too few", bytes),
+                    fmt::format("give it at least {} bytes", least * block_bytes));
+    }
+    return int(most);
+}
+
+}  // namespace
+
+Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes, glm::uvec2 root_mask)
+    : shape_(shape), blocks_(block_count(shape, node_pool_bytes)), bricks_(brick_slots) {
+    const std::size_t entry_total = std::size_t(blocks_.count()) * std::size_t(shape.child_count());
+    entries_.resize(entry_total, interop::NodeEntry{});
+    tiles_.resize(entry_total);
+    block_parent_.resize(std::size_t(blocks_.count()), none);
+    block_child_blocks_.resize(std::size_t(blocks_.count()), 0);
+    block_birth_.resize(std::size_t(blocks_.count()), 0);
+    slot_owner_.resize(std::size_t(brick_slots), none);
+    node_buffer_ = gl::Buffer(entry_total * sizeof(interop::NodeEntry), "node pool");
+    node_buffer_.fill(0);
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    node_texture_ = gl::TextureHandle(id);
+    glTextureBuffer(id, GL_RGBA32UI, node_buffer_.id());
+
+    [[maybe_unused]] const int root_block = blocks_.take_free();  // the first one free is 0
+    set_child_mask(0, root_mask);
+    upload();
+}
+
+void Tree::begin_round(std::uint32_t round, const std::vector<std::uint32_t>& brick_stamps) {
+    round_ = round;
+    slots_sorted_ = false;
+    blocks_sorted_ = false;
+    blocks_exhausted_ = false;
+    for (int slot = 0; slot < bricks_.count(); ++slot) {
+        const std::uint32_t owner = slot_owner_[std::size_t(slot)];
+        const std::uint32_t stamp = brick_stamps[std::size_t(slot)];
+        if (owner == none || stamp <= bricks_.stamp(slot)) continue;
+        bricks_.touch(slot, stamp);
+        for (std::uint32_t entry = owner; entry != none; entry = parent_entry(entry)) {
+            if (blocks_.stamp(int(block_of(entry))) == stamp) break;
+            blocks_.touch(int(block_of(entry)), stamp);
+        }
+    }
+}
+
+bool Tree::wants_children(std::uint32_t entry) const {
+    const interop::NodeEntry& node = entries_[entry];
+    return still_there(entry) && node.children == 0 && tiles_[entry].level < shape_.max_level;
+}
+
+bool Tree::wants_brick(std::uint32_t entry) const {
+    return still_there(entry) && entries_[entry].brick == 0;
+}
+
+void Tree::pin_path(std::uint32_t entry) {
+    for (; entry != none; entry = parent_entry(entry))
+        blocks_.touch(int(block_of(entry)), round_);
+}
+
+std::optional<std::uint32_t> Tree::add_children(std::uint32_t entry) {
+    pin_path(entry);
+    const int block = take_block();
+    if (block < 0) return std::nullopt;
+    blocks_.touch(block, round_);
+    const std::uint32_t first = std::uint32_t(block) * std::uint32_t(shape_.child_count());
+    block_parent_[std::size_t(block)] = entry;
+    block_birth_[std::size_t(block)] = round_;
+    if (entry != 0) ++block_child_blocks_[block_of(entry)];
+    for (int child = 0; child < shape_.child_count(); ++child) {
+        const std::uint32_t e = first + std::uint32_t(child);
+        entries_[e] = interop::NodeEntry{};
+        tiles_[e] = child_of(tiles_[entry], shape_.n, child);
+        mark_dirty(e);
+    }
+    entries_[entry].children = first;
+    mark_dirty(entry);
+    return first;
+}
+
+void Tree::set_child_mask(std::uint32_t entry, glm::uvec2 mask) {
+    entries_[entry].child_mask = mask;
+    mark_dirty(entry);
+}
+
+std::optional<int> Tree::add_brick(std::uint32_t entry) {
+    pin_path(entry);
+    const int slot = take_slot();
+    if (slot < 0) return std::nullopt;
+    bricks_.touch(slot, round_);
+    slot_owner_[std::size_t(slot)] = entry;
+    entries_[entry].brick = std::uint32_t(slot) + 1;
+    mark_dirty(entry);
+    return slot;
+}
+
+int Tree::take_slot() {
+    if (const int slot = bricks_.take_free(); slot >= 0) return slot;
+    if (!slots_sorted_) {
+        old_slots_.clear();
+        for (int slot = 0; slot < bricks_.count(); ++slot) {
+            if (bricks_.stamp(slot) < round_) old_slots_.push_back(slot);
+        }
+        std::sort(old_slots_.begin(), old_slots_.end(),
+                  [&](int a, int b) { return bricks_.stamp(a) > bricks_.stamp(b); });
+        slots_sorted_ = true;
+    }
+    while (!old_slots_.empty()) {
+        const int slot = old_slots_.back();
+        old_slots_.pop_back();
+        if (slot_owner_[std::size_t(slot)] == none || bricks_.stamp(slot) >= round_) continue;
+        evict_brick(slot);
+        return bricks_.take_free();
+    }
+    return -1;
+}
+
+void Tree::evict_brick(int slot) {
+    const std::uint32_t owner = slot_owner_[std::size_t(slot)];
+    entries_[owner].brick = 0;
+    mark_dirty(owner);
+    slot_owner_[std::size_t(slot)] = none;
+    bricks_.release(slot);
+    ++counters_.bricks_evicted;
+}
+
+bool Tree::can_evict_block(int block) const {
+    return block != 0 && block_parent_[std::size_t(block)] != none &&
+           block_child_blocks_[std::size_t(block)] == 0 && blocks_.stamp(block) < round_;
+}
+
+int Tree::take_block() {
+    if (const int block = blocks_.take_free(); block >= 0) return block;
+    if (blocks_exhausted_) return -1;
+    // Taking a block away may make its parent's block the next candidate, so one sorting may not reach all.
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        if (!blocks_sorted_) {
+            old_blocks_.clear();
+            for (int block = 0; block < blocks_.count(); ++block) {
+                if (can_evict_block(block)) old_blocks_.push_back(block);
+            }
+            std::sort(old_blocks_.begin(), old_blocks_.end(),
+                      [&](int a, int b) { return blocks_.stamp(a) > blocks_.stamp(b); });
+            blocks_sorted_ = true;
+        }
+        while (!old_blocks_.empty()) {
+            const int block = old_blocks_.back();
+            old_blocks_.pop_back();
+            if (!can_evict_block(block)) continue;
+            evict_block(block);
+            return blocks_.take_free();
+        }
+        blocks_sorted_ = false;
+    }
+    blocks_exhausted_ = true;
+    return -1;
+}
+
+void Tree::evict_block(int block) {
+    const std::uint32_t first = std::uint32_t(block) * std::uint32_t(shape_.child_count());
+    for (std::uint32_t e = first; e < first + std::uint32_t(shape_.child_count()); ++e) {
+        if (entries_[e].brick != 0) evict_brick(int(entries_[e].brick) - 1);
+    }
+    const std::uint32_t parent = block_parent_[std::size_t(block)];
+    entries_[parent].children = 0;
+    mark_dirty(parent);
+    if (parent != 0) --block_child_blocks_[block_of(parent)];
+    block_parent_[std::size_t(block)] = none;
+    blocks_.release(block);
+    ++counters_.nodes_evicted;
+}
+
+void Tree::upload() {
+    std::sort(dirty_.begin(), dirty_.end());
+    dirty_.erase(std::unique(dirty_.begin(), dirty_.end()), dirty_.end());
+    for (std::size_t i = 0; i < dirty_.size();) {
+        std::size_t end = i + 1;
+        while (end < dirty_.size() && dirty_[end] == dirty_[end - 1] + 1)
+            ++end;
+        node_buffer_.write(dirty_[i] * sizeof(interop::NodeEntry), &entries_[dirty_[i]],
+                           (end - i) * sizeof(interop::NodeEntry));
+        i = end;
+    }
+    dirty_.clear();
+}
+
+void Tree::bind_for_reading() const {
+    glBindTextureUnit(TEXTURE_NODES, node_texture_.id());
+}
+
+}  // namespace cairn::renderer

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/handle.h"
+#include "renderer/pool/lru.h"
+#include "renderer/pool/tree_shape.h"
+#include "shaders/interop/types.h"
+
+namespace cairn::renderer {
+
+/// The N^3-tree: the node pool on the GPU, its mirror on the CPU, and who owns which slot of the brick pool
+/// (Crassin et al. 2008, sections 4.2 and 4.3).
+///
+/// The node pool is an array of NodeEntry in blocks of n^3: the children of one tile. Block 0 holds the root
+/// alone, in its entry 0. Both stores are bounded and recycle what was not used for longest; a parent
+/// outlives its children.
+class Tree {
+public:
+    /// @param root_mask    child_mask of the root tile.
+    /// @throws Error (Fault::usage) when `node_pool_bytes` holds fewer blocks than one path from root to
+    /// leaf.
+    Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes, glm::uvec2 root_mask);
+
+    [[nodiscard]] const TreeShape& shape() const { return shape_; }
+    [[nodiscard]] const Tile& tile(std::uint32_t entry) const { return tiles_[entry]; }
+    [[nodiscard]] std::uint32_t entry_count() const { return std::uint32_t(entries_.size()); }
+    [[nodiscard]] std::size_t size_bytes() const { return node_buffer_.size_bytes(); }
+    [[nodiscard]] int bricks_resident() const { return bricks_.used_count(); }
+
+    /// Starts a round; stamps what rays used in the pass before it, and their ancestors.
+    /// @param brick_stamps  one a slot: the last round whose rays used it.
+    void begin_round(std::uint32_t round, const std::vector<std::uint32_t>& brick_stamps);
+
+    /// Still a question? An earlier answer of the round, or an eviction, may have settled it.
+    [[nodiscard]] bool wants_children(std::uint32_t entry) const;
+    [[nodiscard]] bool wants_brick(std::uint32_t entry) const;
+
+    /// Makes room for the children of a tile. @return the first entry, to be filled with set_child_mask for
+    /// each child
+    ///         that is not empty; none when every block is in use in this round (the ray asks again in the
+    ///         next).
+    [[nodiscard]] std::optional<std::uint32_t> add_children(std::uint32_t entry);
+    void set_child_mask(std::uint32_t entry, glm::uvec2 mask);
+
+    /// Gives the tile a slot for its brick, or none when all slots were given out in this round.
+    [[nodiscard]] std::optional<int> add_brick(std::uint32_t entry);
+
+    /// Sends what changed to the GPU.
+    void upload();
+    void bind_for_reading() const;
+
+    struct Counters {
+        std::uint64_t bricks_evicted = 0;
+        std::uint64_t nodes_evicted = 0;
+    };
+    [[nodiscard]] const Counters& counters() const { return counters_; }
+
+private:
+    static constexpr std::uint32_t none = 0xFFFFFFFFU;
+
+    [[nodiscard]] std::uint32_t block_of(std::uint32_t entry) const {
+        return entry / std::uint32_t(shape_.child_count());
+    }
+    /// False when the entry's block was taken away, or given to another tile, since the rays asked.
+    [[nodiscard]] bool still_there(std::uint32_t entry) const {
+        const std::uint32_t block = block_of(entry);
+        return block == 0 || (block_parent_[block] != none && block_birth_[block] != round_);
+    }
+    [[nodiscard]] std::uint32_t parent_entry(std::uint32_t entry) const {
+        return block_parent_[block_of(entry)];
+    }
+    [[nodiscard]] int take_slot();
+    [[nodiscard]] int take_block();
+    [[nodiscard]] bool can_evict_block(int block) const;
+    void evict_brick(int slot);
+    void evict_block(int block);
+    void pin_path(std::uint32_t entry);
+    void mark_dirty(std::uint32_t entry) { dirty_.push_back(entry); }
+
+    TreeShape shape_;
+    Lru blocks_;
+    Lru bricks_;
+    std::uint32_t round_ = 0;
+    std::vector<interop::NodeEntry> entries_;
+    std::vector<Tile> tiles_;                  // of each entry
+    std::vector<std::uint32_t> block_parent_;  // entry whose children the block holds
+    std::vector<int> block_child_blocks_;      // how many of its entries have children
+    std::vector<std::uint32_t> block_birth_;   // the round that filled it
+    std::vector<std::uint32_t> slot_owner_;    // entry, or none
+    std::vector<int> old_slots_;               // of this round, oldest last
+    std::vector<int> old_blocks_;
+    bool slots_sorted_ = false;
+    bool blocks_sorted_ = false;
+    bool blocks_exhausted_ = false;
+    std::vector<std::uint32_t> dirty_;
+    gl::Buffer node_buffer_;
+    gl::TextureHandle node_texture_;
+    Counters counters_;
+};
+
+}  // namespace cairn::renderer

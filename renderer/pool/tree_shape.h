@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+
+#include <glm/glm.hpp>
+
+#include "gl/shader_source.h"
+
+namespace cairn::renderer {
+
+/// The parameters of an N^3-tree with M^3 bricks (Crassin et al. 2008, section 4.1). Powers of two, so that
+/// tiles lie on the voxelizer's lattice.
+struct TreeShape {
+    int n = 4;          ///< children an axis: 2 or 4
+    int m = 16;         ///< voxels of a brick an axis, border not counted: 8, 16, 32 or 64
+    int max_level = 4;  ///< level of the finest tiles; the root is level 0
+
+    [[nodiscard]] int n_shift() const { return n == 4 ? 2 : 1; }
+    [[nodiscard]] int m_shift() const { return m == 8 ? 3 : m == 16 ? 4 : m == 32 ? 5 : 6; }
+    [[nodiscard]] int child_count() const { return n * n * n; }
+    /// Voxels across the root cube at a level: log2.
+    [[nodiscard]] int voxel_level(int level) const { return m_shift() + n_shift() * level; }
+    /// Voxels across the root cube at the finest level.
+    [[nodiscard]] int resolution() const { return 1 << voxel_level(max_level); }
+    [[nodiscard]] gl::Defines defines(bool has_color) const;
+};
+
+/// The deepest shape whose voxels do not pass `max_resolution` across the root cube.
+/// @throws Error (Fault::usage) when n, m or the resolution cannot work; says which values can.
+[[nodiscard]] TreeShape make_tree_shape(int n, int m, int max_resolution);
+
+/// A region of the regular subdivision: level 0 is the root cube, level l has n^l tiles across it.
+struct Tile {
+    int level = 0;
+    glm::ivec3 position{0};  ///< in tiles of its level
+
+    [[nodiscard]] bool operator==(const Tile&) const = default;
+};
+
+/// Child number x + n (y + n z), as in NodeEntry.child_mask.
+[[nodiscard]] inline Tile child_of(const Tile& tile, int n, int child) {
+    return {tile.level + 1, tile.position * n + glm::ivec3(child % n, child / n % n, child / (n * n))};
+}
+/// One number a tile, for maps; levels up to 63, positions up to 2^19.
+[[nodiscard]] inline std::uint64_t key_of(const Tile& tile) {
+    const auto p = glm::u64vec3(tile.position);
+    return std::uint64_t(tile.level) << 58U | p.x << 38U | p.y << 19U | p.z;
+}
+[[nodiscard]] inline Tile parent_of(const Tile& tile, int n) {
+    return {tile.level - 1, tile.position / n};
+}
+
+}  // namespace cairn::renderer

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+
+#include "renderer/pool/brick_pool.h"
+#include "renderer/pool/tree_shape.h"
+
+namespace cairn::renderer {
+
+struct BrickRequest {
+    Tile tile;
+    int slot = 0;
+};
+
+/// Fills bricks on demand (Crassin et al. 2008, section 6.1).
+class Producer {
+public:
+    Producer() = default;
+    Producer(const Producer&) = delete;
+    Producer& operator=(const Producer&) = delete;
+    Producer(Producer&&) = delete;
+    Producer& operator=(Producer&&) = delete;
+    virtual ~Producer() = default;
+
+    /// Writes the whole slot of each request: colour or coverage, normal, masks, border included. The same
+    /// tile gives the same texels whatever it is produced with.
+    virtual void produce(std::span<const BrickRequest> requests, const BrickPool& pool) = 0;
+};
+
+}  // namespace cairn::renderer

@@ -1,0 +1,121 @@
+#include "renderer/produce/surface_producer.h"
+
+#include <algorithm>
+
+#include "shaders/interop/bindings.h"
+
+namespace cairn::renderer {
+namespace {
+
+constexpr std::size_t scratch_budget_bytes = std::size_t(24) << 20U;
+/// Pairs sent to the driver at once.
+constexpr std::size_t pair_capacity = std::size_t(1) << 18U;
+/// A triangle that crosses a whole brick is cut in pieces of this many slices, for threads to share.
+constexpr int slices_a_pair = 4;
+constexpr unsigned group_size = 64;
+
+std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
+    const auto side = std::size_t(shape.m) + 2;
+    return side * side * side * (has_color ? 9 : 6) * sizeof(std::uint32_t);  // SCRATCH_WORDS
+}
+
+}  // namespace
+
+SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface,
+                                 TriangleLists& lists, const gl::ShaderSource& shaders)
+    : shape_(shape), surface_(surface), lists_(lists), pairs_(surface.chunks.size()) {
+    const std::size_t brick_bytes = scratch_bytes_a_brick(shape, surface.has_color);
+    batch_ = int(std::clamp<std::size_t>(scratch_budget_bytes / brick_bytes, 1, 0xFFFF));
+    gl::Defines defines = shape.defines(surface.has_color);
+    masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
+    summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
+    resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
+    defines.emplace_back("HAS_MASK", surface.has_mask ? "1" : "0");
+    splat_ = gl::build_compute(shaders, "produce/splat.comp.glsl", defines);
+
+    scratch_ = gl::Buffer(std::size_t(batch_) * brick_bytes, "brick scratch");
+    scratch_.fill(0);
+    tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
+    pair_buffer_ = gl::Buffer(pair_capacity * sizeof(interop::BrickPair), "brick pairs");
+}
+
+void SurfaceProducer::produce(std::span<const BrickRequest> requests, const BrickPool& pool) {
+    for (std::size_t i = 0; i < requests.size(); i += std::size_t(batch_)) {
+        produce_batch(requests.subspan(i, std::min(std::size_t(batch_), requests.size() - i)), pool);
+    }
+}
+
+void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
+    for (auto& list : pairs_)
+        list.clear();
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+        const Tile& tile = requests[i].tile;
+        const int shift = LATTICE_BITS - shape_.voxel_level(tile.level);
+        const int low = tile.position.z * shape_.m - 1;  // first slice of the border
+        for (const std::uint32_t triangle : lists_.list(tile)) {
+            // Slice s is touched when [s, s + 1] meets the triangle's extent: one more on each side of whole
+            // numbers.
+            const TriangleLists::Box& box = lists_.box(triangle);
+            const int first = std::max(((box.low.z - 1) >> shift) - low, 0);
+            const int last = std::min((box.high.z >> shift) - low, shape_.m + 1);
+            for (int slice = first; slice <= last; slice += slices_a_pair) {
+                const int count = std::min(slices_a_pair, last - slice + 1);
+                pairs_[triangle / SURFACE_CHUNK_TRIANGLES].push_back(
+                    {triangle % SURFACE_CHUNK_TRIANGLES,
+                     std::uint32_t(i) | std::uint32_t(slice) << 16U | std::uint32_t(count) << 24U});
+            }
+        }
+    }
+}
+
+void SurfaceProducer::splat(std::size_t chunk) {
+    const std::vector<interop::BrickPair>& pairs = pairs_[chunk];
+    if (pairs.empty()) return;
+    surface_.bind(chunk);
+    tiles_.bind_storage(SSBO_BRICK_TILES);
+    scratch_.bind_storage(SSBO_BRICK_SCRATCH);
+    pair_buffer_.bind_storage(SSBO_BRICK_PAIRS);
+    splat_.use();
+    for (std::size_t i = 0; i < pairs.size(); i += pair_capacity) {
+        const std::size_t count = std::min(pair_capacity, pairs.size() - i);
+        pair_buffer_.write(0, &pairs[i], count * sizeof(interop::BrickPair));
+        splat_.set("pair_count", unsigned(count));
+        gl::dispatch_threads(count, group_size);
+    }
+}
+
+void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool) {
+    std::vector<interop::BrickTile> tiles;
+    tiles.reserve(requests.size());
+    for (const BrickRequest& request : requests) {
+        const int shift = LATTICE_BITS - shape_.voxel_level(request.tile.level);
+        tiles.push_back({glm::ivec4(request.tile.position * shape_.m, shift),
+                         glm::ivec4(pool.first_texel(request.slot), request.slot)});
+    }
+    tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::BrickTile));
+
+    gather_pairs(requests);
+    for (std::size_t chunk = 0; chunk < pairs_.size(); ++chunk)
+        splat(chunk);
+
+    const auto count = unsigned(requests.size());
+    const auto blocks = std::size_t(shape_.m / 4) * std::size_t(shape_.m / 4) * std::size_t(shape_.m / 4);
+    const auto side = std::size_t(shape_.m) + 2;
+    tiles_.bind_storage(SSBO_BRICK_TILES);
+    scratch_.bind_storage(SSBO_BRICK_SCRATCH);
+    pool.bind_for_writing();
+    auto run = [&](const gl::Program& program, std::size_t threads) {
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        program.use();
+        program.set("tile_count", count);
+        gl::dispatch_threads(threads, group_size);
+    };
+    run(masks_, count * blocks);
+    run(summarize_, count * ((blocks + 63) / 64));
+    run(resolve_, count * side * side * side);
+    // The next batch reuses the scratch; rays fetch the texels.
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+}  // namespace cairn::renderer

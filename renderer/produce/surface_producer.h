@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/program.h"
+#include "renderer/produce/producer.h"
+#include "renderer/produce/triangle_lists.h"
+#include "shaders/interop/types.h"
+#include "voxelizer/surface.h"
+
+namespace cairn::renderer {
+
+/// Fills bricks by voxelizing the tile's region four times finer, from the triangles of the tile's own list:
+/// coverage from the finer bits, base colour and normal as means over them. All on the GPU, many bricks at
+/// once.
+class SurfaceProducer final : public Producer {
+public:
+    /// Refers to the surface and the lists, which must outlive it.
+    SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface, TriangleLists& lists,
+                    const gl::ShaderSource& shaders);
+
+    void produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+
+private:
+    void produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool);
+    void gather_pairs(std::span<const BrickRequest> requests);
+    void splat(std::size_t chunk);
+
+    TreeShape shape_;
+    const voxelizer::GpuSurface& surface_;
+    TriangleLists& lists_;
+    int batch_ = 1;
+    gl::Program splat_;
+    gl::Program masks_;
+    gl::Program summarize_;
+    gl::Program resolve_;
+    gl::Buffer tiles_;
+    gl::Buffer scratch_;
+    gl::Buffer pair_buffer_;
+    std::vector<std::vector<interop::BrickPair>> pairs_;  // one list a surface chunk
+};
+
+}  // namespace cairn::renderer

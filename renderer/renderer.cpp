@@ -1,0 +1,202 @@
+#include "renderer/renderer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "renderer/march/marcher.h"
+#include "renderer/pool/brick_pool.h"
+#include "renderer/pool/tree.h"
+#include "renderer/produce/surface_oracle.h"
+#include "renderer/produce/surface_producer.h"
+#include "renderer/produce/triangle_lists.h"
+#include "shaders/interop/config.h"
+#include "voxelizer/surface.h"
+#include "voxelizer/voxelizer.h"
+
+namespace cairn::renderer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+voxelizer::Surface flatten(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
+                           const TreeShape& shape) {
+    const voxelizer::Grid grid = voxelizer::grid_around(snapshot.bounds, shape.resolution());
+    return voxelizer::build_surface(scene, snapshot, grid, {.attributes = true});
+}
+
+/// A camera that cannot be is a fault of the caller, and NaN in a shader is a picture that nobody can
+/// explain.
+void check(const View& view) {
+    const Camera& camera = view.camera;
+    auto fail = [](const std::string& what) { throw Error(Fault::usage, "view", what); };
+    if (view.width < 1 || view.height < 1 || view.width > 16384 || view.height > 16384) {
+        fail(fmt::format("a picture of {} x {} pixels is not between 1 and 16384 a side", view.width,
+                         view.height));
+    }
+    if (!(camera.yfov > 0.0 && camera.yfov < 3.14159))
+        fail("the field of view is not between 0 and 180 degrees");
+    if (!(view.pixel_error > 0.0)) fail("the pixel error is not positive");
+    const glm::dvec3 forward = camera.target - camera.eye;
+    const double length = glm::length(forward);
+    if (!std::isfinite(length) || length == 0.0) fail("the camera looks at where it stands");
+    const double side = glm::length(glm::cross(forward / length, camera.up));
+    if (!std::isfinite(side) || side < 1e-9) fail("the camera's up direction is the one it looks along");
+    const glm::dvec3 light = view.light.positional ? view.light.position : view.light.towards;
+    if (!std::isfinite(glm::length(light)) || (!view.light.positional && glm::length(light) == 0.0)) {
+        fail("the light has no direction");
+    }
+}
+
+/// The view in voxels of the finest level, from the root cube's low corner.
+interop::MarchView march_view(const View& view, const voxelizer::Grid& grid) {
+    auto place = [&](const glm::dvec3& world) { return glm::vec3((world - grid.origin) / grid.voxel_size); };
+    const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
+    const glm::dvec3 up = glm::cross(right, forward);
+    const double half_height = std::tan(0.5 * view.camera.yfov);
+    const double half_width = half_height * view.width / view.height;
+
+    interop::MarchView out{};
+    out.eye = glm::vec4(place(view.camera.eye), float(2.0 * half_height / view.height * view.pixel_error));
+    out.forward = glm::vec4(glm::vec3(forward), 0.0F);
+    out.right = glm::vec4(glm::vec3(right * half_width), 0.0F);
+    out.up = glm::vec4(glm::vec3(up * half_height), 0.0F);
+    out.light = view.light.positional ? glm::vec4(place(view.light.position), 1.0F)
+                                      : glm::vec4(glm::vec3(glm::normalize(view.light.towards)), 0.0F);
+    out.light_color = glm::vec4(view.light.color, view.light.ambient);
+    out.background = glm::vec4(view.background, 0.0F);
+    out.size_shadow = glm::ivec4(view.width, view.height, view.shadow == Shadow::hard ? 1 : 0, 0);
+    return out;
+}
+
+}  // namespace
+
+/// In the order of the data's way: surface, oracle and producer, pools, marcher.
+struct Renderer::Parts {
+    Parts(const TreeShape& tree_shape, const voxelizer::Surface& flat, const TreeOptions& options,
+          const gl::ShaderSource& shaders)
+        : shape(tree_shape),
+          grid(flat.grid),
+          surface(voxelizer::upload(flat)),
+          lists(shape, flat),
+          voxelizer(shaders),
+          oracle(shape, surface, voxelizer, lists),
+          producer(shape, surface, lists, shaders),
+          pool(shape, flat.has_color, options.brick_pool_bytes),
+          tree(shape, pool.slot_count(), options.node_pool_bytes, oracle.child_mask(Tile{})),
+          marcher(shape, flat.has_color, shaders) {}
+
+    void serve(std::vector<std::uint32_t> queries);
+    void subdivide(std::uint32_t entry);
+
+    TreeShape shape;
+    voxelizer::Grid grid;
+    voxelizer::GpuSurface surface;
+    TriangleLists lists;
+    voxelizer::Voxelizer voxelizer;
+    SurfaceOracle oracle;
+    SurfaceProducer producer;
+    BrickPool pool;
+    Tree tree;
+    Marcher marcher;
+    std::uint32_t round = 1;
+    FrameStatistics statistics;
+};
+
+Renderer::Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options,
+                   const gl::ShaderSource& shaders) {
+    const TreeShape shape = make_tree_shape(options.n, options.m, options.max_resolution);
+    parts_ = std::make_unique<Parts>(shape, flatten(scene, snapshot, shape), options, shaders);
+}
+
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+void Renderer::Parts::subdivide(std::uint32_t entry) {
+    if (!tree.wants_children(entry)) return;
+    const std::optional<std::uint32_t> first = tree.add_children(entry);
+    if (!first) return;
+    ++statistics.nodes_subdivided;
+    const Tile tile = tree.tile(entry);
+    const glm::uvec2 mask = oracle.child_mask(tile);
+    for (int child = 0; child < shape.child_count(); ++child) {
+        if ((mask[child / 32] >> (child % 32) & 1U) == 0) continue;
+        tree.set_child_mask(*first + std::uint32_t(child), oracle.child_mask(child_of(tile, shape.n, child)));
+    }
+}
+
+/// Answers the tile queries of a pass. Bricks come first, then the deepest nodes: whatever the pools' sizes,
+/// the ray that is nearest to its data gets it, so every pass brings some ray forward and the frame ends.
+void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
+    auto level = [&](std::uint32_t query) { return tree.tile(query / 2).level; };
+    std::sort(queries.begin(), queries.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const bool brick_a = a % 2 == QUERY_BRICK;
+        const bool brick_b = b % 2 == QUERY_BRICK;
+        if (brick_a != brick_b) return brick_a;
+        if (level(a) != level(b)) return level(a) > level(b);
+        return a < b;
+    });
+    std::vector<BrickRequest> requests;
+    for (const std::uint32_t query : queries) {
+        const std::uint32_t entry = query / 2;
+        if (query % 2 == QUERY_CHILDREN) {
+            subdivide(entry);
+        } else if (tree.wants_brick(entry)) {
+            if (const std::optional<int> slot = tree.add_brick(entry))
+                requests.push_back({tree.tile(entry), *slot});
+        }
+    }
+    producer.produce(requests, pool);
+    statistics.bricks_produced += requests.size();
+    statistics.tile_queries += queries.size();
+    tree.upload();
+}
+
+Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
+    check(view);
+    Parts& parts = *parts_;
+    const auto start = Clock::now();
+    const Tree::Counters before = parts.tree.counters();
+    parts.statistics = FrameStatistics{};
+    FrameStatistics& statistics = parts.statistics;
+
+    parts.marcher.begin_frame(march_view(view, parts.grid), parts.tree, parts.pool);
+    const double pixels = double(view.width) * view.height;
+    for (;;) {
+        const auto pass_start = Clock::now();
+        const PassResult pass = parts.marcher.run_pass(parts.round, parts.tree, parts.pool);
+        const auto pass_end = Clock::now();
+        statistics.march_ms += std::chrono::duration<double, std::milli>(pass_end - pass_start).count();
+        ++statistics.passes;
+        ++parts.round;
+        parts.tree.begin_round(parts.round, pass.brick_stamps);
+        if (pass.done()) break;
+        parts.serve(pass.queries);
+        statistics.produce_ms += milliseconds_since(pass_end);
+        if (progress) progress(1.0 - (pass.waiting_primary + 0.5 * pass.waiting_shadow) / pixels);
+    }
+
+    Image image{view.width, view.height, parts.marcher.read_image()};
+    statistics.milliseconds = milliseconds_since(start);
+    statistics.bricks_evicted = parts.tree.counters().bricks_evicted - before.bricks_evicted;
+    statistics.nodes_evicted = parts.tree.counters().nodes_evicted - before.nodes_evicted;
+    statistics.bricks_resident = std::uint64_t(parts.tree.bricks_resident());
+    statistics.node_pool_bytes = parts.tree.size_bytes();
+    statistics.brick_pool_bytes = parts.pool.size_bytes();
+    return image;
+}
+
+const FrameStatistics& Renderer::statistics() const {
+    return parts_->statistics;
+}
+
+}  // namespace cairn::renderer
