@@ -6,7 +6,7 @@
 
 namespace cairn::scenes {
 
-/// Writes the rest pose of a scene as a .glb file that glTF validators accept: nodes, meshes, materials and base-colour
+/// Writes a scene as a .glb file that glTF validators accept: nodes, meshes, materials and base-colour
 /// textures (PNG), lights, cameras and instances. Meshes stay shared. Skins, morph targets and animations are not
 /// written: a mesh that they deform is written as its file stores it. Texture transforms are applied to the coordinates.
 /// @throws Error when the file cannot be written, or when the scene passes the 4 GiB that a .glb can hold.
