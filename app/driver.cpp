@@ -28,6 +28,10 @@ std::string Driver::name() const {
     return gl::driver_name();
 }
 
+std::string Driver::backend() const {
+    return std::string(context_->backend());
+}
+
 void Driver::check() const {
     const std::vector<std::string> messages = context_->debug_log().take();
     if (messages.empty()) return;

@@ -15,7 +15,8 @@ public:
     /// @throws Error (Fault::context)
     explicit Driver(const DriverOptions& options);
 
-    [[nodiscard]] std::string name() const;  ///< of the driver, for reports
+    [[nodiscard]] std::string name() const;     ///< "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 ..."
+    [[nodiscard]] std::string backend() const;  ///< "osmesa" or "egl"
     /// @throws Error (Fault::context) when KHR_debug heard of an error or of undefined behaviour: a bug of
     /// ours.
     void check() const;

@@ -5,6 +5,7 @@
 #include "app/exit_code.h"
 #include "app/terminal.h"
 #include "app/verbs.h"
+#include "base/error.h"
 #include "scenes/builtin.h"
 
 namespace cairn::app {
@@ -23,19 +24,28 @@ std::string footer() {
     return text;
 }
 
-/// An argument that stands where a verb is expected but is none.
-/// CLI11 would only say that something was not expected.
-bool is_unknown_verb(const CLI::App& command, int argc, char** argv) {
-    if (argc < 2 || argv[1][0] == '-') return false;
-    const auto called = [&](const CLI::App* verb) { return verb->get_name() == argv[1]; };
-    return command.get_subcommands(called).empty();
+/// Says what CLI11 leaves unsaid or says oddly.
+void check_verb(const CLI::App& command, int argc, char** argv) {
+    std::string verbs;
+    for (const CLI::App* verb : command.get_subcommands([](const CLI::App*) { return true; })) {
+        if (argc > 1 && verb->get_name() == argv[1]) return;
+        verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+    }
+    if (argc > 1 && argv[1][0] == '-') return;
+    throw Error(Fault::usage, "",
+                argc < 2 ? "a verb is missing" : fmt::format("there is no verb \"{}\"", argv[1]),
+                fmt::format("verbs: {}; \"cairn --help\" tells more", verbs));
 }
 
 ExitCode report_usage(const CLI::App& command, const CLI::ParseError& error) {
     std::string asked = "cairn";
     for (const CLI::App* verb : command.get_subcommands())
         asked += " " + verb->get_name();
-    print_error(error.what(), fmt::format("\"{} --help\" lists what it takes", asked));
+    std::string what = error.what();
+    if (error.get_exit_code() == int(CLI::ExitCodes::ArgumentMismatch)) {
+        what = what.substr(0, what.find(':')) + " takes one value, once";
+    }
+    print_error(what, fmt::format("\"{} --help\" lists what it takes", asked));
     return ExitCode::usage;
 }
 
@@ -52,10 +62,7 @@ ExitCode run(int argc, char** argv) {
     command.set_version_flag("--version", "cairn " CAIRN_VERSION);
     command.get_formatter()->column_width(38);
     command.footer(footer());
-    if (is_unknown_verb(command, argc, argv)) {
-        print_error(fmt::format("there is no verb \"{}\"", argv[1]), "\"cairn --help\" lists them");
-        return ExitCode::usage;
-    }
+    check_verb(command, argc, argv);
     try {
         command.parse(argc, argv);
     } catch (const CLI::Success& asked_for_help) {

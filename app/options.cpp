@@ -17,6 +17,14 @@ namespace {
 /// Past this a cube of bits takes 8 GiB.
 constexpr int max_grid_resolution = 4096;
 constexpr int max_scene_index = 1 << 20;
+constexpr const char* common_group = "Common options";
+
+/// A device or a pipe: it needs no ending, and opening it only to look would be felt at its other end.
+bool is_device(const std::filesystem::path& path) {
+    const std::filesystem::file_status there = std::filesystem::status(path);
+    return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
+           !std::filesystem::is_directory(there);
+}
 
 gl::ContextKind context_named(const std::string& name) {
     if (name == "auto") return gl::ContextKind::automatic;
@@ -61,8 +69,9 @@ void add_report_options(CLI::App& verb, ReportOptions& options) {
                       [&options](const std::string& target) {
                           if (target != "-") check_writable(target);
                           options.json = target;
-                      });
-    verb.add_flag("--quiet", options.quiet, "print nothing but errors");
+                      })
+        ->group(common_group);
+    verb.add_flag("--quiet", options.quiet, "print nothing but errors")->group(common_group);
 }
 
 void add_scene_argument(CLI::App& verb, SceneOptions& options) {
@@ -70,28 +79,34 @@ void add_scene_argument(CLI::App& verb, SceneOptions& options) {
         ->required()
         ->type_name("");
     verb.add_flag("--trust-paths", options.trust_paths,
-                  "let the scene read files outside its own folder (only for files you trust)");
+                  "let the scene read files outside its own folder: only for\nfiles that you trust")
+        ->group(common_group);
 }
 
 void add_moment_options(CLI::App& verb, SceneOptions& options) {
     add_parsed_option(
-        verb, "--time", "SECONDS", "the moment to show; plays the first animation if none is named",
-        [&options](const std::string& text) { options.seconds = parse_number("--time", text); });
+        verb, "--time", "SECONDS",
+        "the moment to show (default: the rest pose); plays the\nfirst animation if none is named",
+        [&options](const std::string& text) { options.seconds = parse_number("--time", text); })
+        ->group(common_group);
     add_parsed_option(verb, "--animation", "NAME|INDEX", "the animation to play, by name or counted from 0",
-                      [&options](const std::string& text) { options.animation = text; });
+                      [&options](const std::string& text) { options.animation = text; })
+        ->group(common_group);
     add_parsed_option(verb, "--scene-index", "I",
-                      "which scene of the file, counted from 0 (default: the file's own choice)",
+                      "which scene of the file, counted from 0 (default: the\nfile's own choice)",
                       [&options](const std::string& text) {
                           options.scene_index = parse_int("--scene-index", text, 0, max_scene_index);
-                      });
+                      })
+        ->group(common_group);
 }
 
 void add_driver_options(CLI::App& verb, DriverOptions& options) {
     add_parsed_option(verb, "--context", "auto|osmesa|egl", "where OpenGL comes from (default: auto)",
-                      [&options](const std::string& text) { options.context = context_named(text); });
-    add_parsed_option(verb, "--shader-dir", "DIR",
-                      "read the shaders from a folder instead of the built-in copies",
-                      [&options](const std::string& text) { options.shaders = shaders_in(text); });
+                      [&options](const std::string& text) { options.context = context_named(text); })
+        ->group(common_group);
+    add_parsed_option(verb, "--shader-dir", "DIR", "read the shaders from a folder, not the built-in copies",
+                      [&options](const std::string& text) { options.shaders = shaders_in(text); })
+        ->group(common_group);
 }
 
 void add_common_options(CLI::App& verb, CommonOptions& options) {
@@ -110,8 +125,8 @@ void add_grid_options(CLI::App& verb, GridOptions& options) {
         ->required();
     add_parsed_option(
         verb, "--bounds", "X0,Y0,Z0,X1,Y1,Z1",
-        "the part of the world to cut into voxels: the cube at its low corner, as wide as its longest "
-        "side (default: a cube around the scene)",
+        "the part of the world to cut into voxels: the cube at its\nlow corner, as wide as its longest side "
+        "(default: a cube\naround the scene)",
         [&options](const std::string& text) { options.bounds = bounds_of(text); });
 }
 
@@ -122,10 +137,7 @@ CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::pa
     return add_parsed_option(
         verb, "-o,--output", "FILE", description, [&output, known](const std::string& text) {
             const std::filesystem::path path(text);
-            // A device such as /dev/null has no ending, and asks for none.
-            const bool is_device = std::filesystem::exists(path) && !std::filesystem::is_regular_file(path) &&
-                                   !std::filesystem::is_directory(path);
-            if (!is_device &&
+            if (!is_device(path) &&
                 std::find(known.begin(), known.end(), path.extension().string()) == known.end()) {
                 throw Error(Fault::usage, text.empty() ? "--output" : text,
                             fmt::format("no format ends in \"{}\"", path.extension().string()),
@@ -137,7 +149,7 @@ CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::pa
 }
 
 void check_writable(const std::filesystem::path& path) {
-    const OutputFile probe(path);
+    if (!is_device(path)) const OutputFile probe(path);
 }
 
 }  // namespace cairn::app

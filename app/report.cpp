@@ -35,7 +35,7 @@ std::string text_of(std::string_view key, const Json& value) {
     if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
     if (value.is_string()) return printable(value.get<std::string>());
     if (value.is_number() && (ends_in(key, "_ms") || key == "milliseconds")) {
-        return fmt::format("{:.1f} ms", value.get<double>());
+        return fmt::format("{:.{}f} ms", value.get<double>(), value.get<double>() < 10.0 ? 2 : 1);
     }
     if (value.is_number() && ends_in(key, "_bytes"))
         return fmt::format("{:.1f} MiB", value.get<double>() / 0x1p20);

@@ -38,10 +38,8 @@ ExitCode run(const VoxelizationOptions& options) {
 }  // namespace
 
 void add_check(CLI::App& command, Work& chosen) {
-    add_verb<VoxelizationOptions>(
-        command, chosen, "check",
-        "voxelize, and compare with the exact reference on the CPU; exit 1 if they differ",
-        add_voxelization_options, run);
+    add_verb<VoxelizationOptions>(command, chosen, "check", "Voxelize, and compare with the exact reference",
+                                  add_voxelization_options, run);
 }
 
 }  // namespace cairn::app

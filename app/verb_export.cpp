@@ -40,7 +40,8 @@ ExitCode run(const Options& options) {
 
 void add_export(CLI::App& command, Work& chosen) {
     add_verb<Options>(command, chosen, "export",
-                      "write the rest pose of a scene as .glb, a built-in one for example", add_options, run);
+                      "Write the rest pose of a scene as .glb, a built-in one for instance", add_options,
+                      run);
 }
 
 }  // namespace cairn::app

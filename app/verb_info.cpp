@@ -94,7 +94,7 @@ ExitCode run(const CommonOptions& options) {
 }  // namespace
 
 void add_info(CLI::App& command, Work& chosen) {
-    add_verb<CommonOptions>(command, chosen, "info", "say what a scene holds; needs no OpenGL",
+    add_verb<CommonOptions>(command, chosen, "info", "Say what a scene holds; needs no OpenGL",
                             add_common_options, run);
 }
 

@@ -1,7 +1,8 @@
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include <fmt/format.h>
@@ -71,7 +72,6 @@ renderer::Shadow shadow_named(const std::string& name) {
 }
 
 void add_options(CLI::App& verb, Options& options) {
-    add_common_options(verb, options.common);
     add_output_option(verb, options.output, {".png"},
                       fmt::format("the picture (default: {} in the current folder)", default_output));
     add_parsed_option(verb, "--size", "WxH", "pixels (default: 512x512)",
@@ -80,24 +80,24 @@ void add_options(CLI::App& verb, Options& options) {
                       });
     add_parsed_option(
         verb, "--camera", "EX,EY,EZ,TX,TY,TZ[,FOV]",
-        "the eye, the point it looks at, and the vertical field of view in degrees (default: the whole "
+        "the eye, the point it looks at, and the vertical field of\nview in degrees (default: the whole "
         "scene, 45 degrees)",
         [&options](const std::string& text) {
             options.view.camera = camera_of(text);
             options.camera_given = true;
         });
-    add_parsed_option(
-        verb, "--light", "X,Y,Z",
-        "a white point light in the world (default: the scene's first directional or point light; a "
-        "direction from above if it has none)",
-        [&options](const std::string& text) {
-            options.view.light = light_of(text);
-            options.light_given = true;
-        });
-    add_parsed_option(verb, "--shadow", "none|hard", "(default: hard)",
+    add_parsed_option(verb, "--light", "X,Y,Z",
+                      "a white point light in the world (default: the scene's\nfirst directional or point "
+                      "light; from above "
+                      "if it has none)",
+                      [&options](const std::string& text) {
+                          options.view.light = light_of(text);
+                          options.light_given = true;
+                      });
+    add_parsed_option(verb, "--shadow", "none|hard", "shadows of that light (default: hard)",
                       [&options](const std::string& text) { options.view.shadow = shadow_named(text); });
     add_parsed_option(verb, "--max-resolution", "N",
-                      fmt::format("voxels across the scene that rays may ask for (default: {})",
+                      fmt::format("the most voxels across the scene that rays may ask for\n(default: {})",
                                   options.tree.max_resolution),
                       [&options](const std::string& text) {
                           options.tree.max_resolution =
@@ -110,6 +110,7 @@ void add_options(CLI::App& verb, Options& options) {
             options.tree.brick_pool_bytes =
                 std::size_t(parse_int("--brick-pool", text, 1, max_brick_pool_mib)) << 20U;
         });
+    add_common_options(verb, options.common);
 }
 
 /// The first light that the renderer can do. Only its colour is taken: glTF's intensities are in candela and
@@ -200,6 +201,7 @@ ExitCode run(const Options& options) {
     report.add("brick_pool_bytes", first.brick_pool_bytes);
     report.add("peak_rss_bytes", peak_rss_bytes());
     report.add("driver", driver.name());
+    report.add("backend", driver.backend());
     report.add("output", output.string());
     report.finish();
     return ExitCode::done;
@@ -208,7 +210,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_render(CLI::App& command, Work& chosen) {
-    add_verb<Options>(command, chosen, "render", "make a picture of a scene through its voxel cache",
+    add_verb<Options>(command, chosen, "render", "Make a picture of a scene through its voxel cache",
                       add_options, run);
 }
 

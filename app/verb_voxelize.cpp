@@ -17,9 +17,9 @@ struct Options {
 };
 
 void add_options(CLI::App& verb, Options& options) {
-    add_voxelization_options(verb, options.voxelization);
     add_output_option(verb, options.output, {".npy"},
-                      "write the voxels: .npy holds uint8 of shape (N, N, N), a[x, y, z], 1 = occupied");
+                      "write the voxels: .npy holds uint8 of shape (N, N, N),\na[x, y, z], 1 = occupied");
+    add_voxelization_options(verb, options.voxelization);
 }
 
 ExitCode run(const Options& options) {
@@ -40,7 +40,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_voxelize(CLI::App& command, Work& chosen) {
-    add_verb<Options>(command, chosen, "voxelize", "mark every voxel that the surface touches, on the GPU",
+    add_verb<Options>(command, chosen, "voxelize", "Mark every voxel that the surface touches, on the GPU",
                       add_options, run);
 }
 

@@ -17,15 +17,15 @@ constexpr const char* only_method = "conservative";
 }  // namespace
 
 void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options) {
-    add_common_options(verb, options.common);
     add_grid_options(verb, options.grid);
-    add_parsed_option(verb, "--method", "NAME", "how voxels are found: conservative, the only method so far",
+    add_parsed_option(verb, "--method", "NAME", "how voxels are found: conservative (the only one so far)",
                       [](const std::string& name) {
                           if (name == only_method) return;
                           throw Error(Fault::usage, "--method",
                                       fmt::format("there is no method \"{}\"", name),
                                       fmt::format("{} is the only one so far", only_method));
                       });
+    add_common_options(verb, options.common);
 }
 
 Voxelization voxelize_input(const VoxelizationOptions& options, Report& report) {
@@ -69,6 +69,7 @@ Voxelization voxelize_input(const VoxelizationOptions& options, Report& report) 
     report.add("context_ms", context_ms);
     report.add("upload_ms", upload_ms);
     report.add("driver", driver.name());
+    report.add("backend", driver.backend());
     return out;
 }
 
