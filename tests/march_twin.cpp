@@ -1,0 +1,254 @@
+#include "tests/march_twin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "reference/exact_voxels.h"
+#include "scenes/snapshot.h"
+#include "voxelizer/surface.h"
+
+namespace cairn::testing {
+namespace {
+
+using glm::dvec3;
+using glm::ivec3;
+
+/// Sums over the 4^3 finer voxels of one voxel.
+struct Gathered {
+    bool fine[4][4][4] = {};
+    dvec3 normal{0.0};
+};
+
+double coverage_of(const Gathered& g) {
+    int most = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        int columns = 0;
+        for (int i = 0; i < 4; ++i) {
+            for (int j = 0; j < 4; ++j) {
+                bool any = false;
+                for (int k = 0; k < 4; ++k) {
+                    any |= axis == 0 ? g.fine[k][i][j] : axis == 1 ? g.fine[i][k][j] : g.fine[i][j][k];
+                }
+                columns += any ? 1 : 0;
+            }
+        }
+        most = std::max(most, columns);
+    }
+    return std::round(most / 16.0 * 255.0) / 255.0;  // R8
+}
+
+dvec3 rounded_normal(const dvec3& n) {
+    return glm::round((n * 0.5 + 0.5) * 1023.0) / 1023.0 * 2.0 - 1.0;  // RGB10_A2
+}
+
+/// Adds one triangle's exact finer voxels to the voxels that hold them.
+void gather(const voxelizer::Surface& one, int fine_level, int side, std::vector<Gathered>& all) {
+    const voxelizer::SurfaceChunk& chunk = one.chunks[0];
+    auto corner = [&](std::uint32_t v) {
+        const auto& p = chunk.positions[v];
+        return ivec3(p[0], p[1], p[2]);
+    };
+    const glm::uvec4 t = chunk.triangles[0].vertices_material;
+    const ivec3 a = corner(t.x);
+    const ivec3 b = corner(t.y);
+    const ivec3 c = corner(t.z);
+    const dvec3 cross = glm::cross(dvec3(b - a), dvec3(c - a));
+    const dvec3 normal = glm::length(cross) > 0.0 ? glm::normalize(cross) : dvec3(0.0);
+    const int fine_side = 1 << (LATTICE_BITS - fine_level);
+    const ivec3 low = glm::max(glm::min(a, glm::min(b, c)) / fine_side - 1, ivec3(0));
+    const ivec3 high = glm::min(glm::max(a, glm::max(b, c)) / fine_side + 1, ivec3(4 * side - 1));
+    const voxelizer::BitGrid bits = reference::exact_voxels(one, {fine_level, low, high - low + 1});
+    for (int z = 0; z < bits.size.z; ++z) {
+        for (int y = 0; y < bits.size.y; ++y) {
+            for (int x = 0; x < bits.size.x; ++x) {
+                if (!bits.at({x, y, z})) continue;
+                const ivec3 f = low + ivec3(x, y, z);
+                const ivec3 v = f / 4;
+                Gathered& g = all[std::size_t((v.z * side + v.y) * side + v.x)];
+                g.fine[f.x % 4][f.y % 4][f.z % 4] = true;
+                g.normal += normal;
+            }
+        }
+    }
+}
+
+struct Hit {
+    double transmittance = 1.0;
+    dvec3 normal{0.0};
+    double best_weight = 0.0;
+    double depth = 0.0;
+};
+
+/// Calls visit(voxel, t_in, t_out) for each voxel that the ray crosses, nearest first, until it returns false.
+/// Positions in voxels.
+void cross_voxels(int side, const dvec3& origin, const dvec3& direction, double t_end,
+                  const std::function<bool(const ivec3&, double, double)>& visit) {
+    double t_near = 0.0;
+    double t_far = t_end;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0.0) {
+            if (origin[axis] < 0.0 || origin[axis] > side) return;
+            continue;
+        }
+        const double t0 = -origin[axis] / direction[axis];
+        const double t1 = (side - origin[axis]) / direction[axis];
+        t_near = std::max(t_near, std::min(t0, t1));
+        t_far = std::min(t_far, std::max(t0, t1));
+    }
+    if (t_near >= t_far) return;
+    ivec3 v = glm::clamp(ivec3(glm::floor(origin + direction * t_near)), ivec3(0), ivec3(side - 1));
+    for (double t = t_near; t < t_end;) {
+        int axis = 0;
+        double t_out = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < 3; ++k) {
+            if (direction[k] == 0.0) continue;
+            const double plane = (v[k] + (direction[k] > 0.0 ? 1 : 0) - origin[k]) / direction[k];
+            if (plane < t_out) {
+                t_out = plane;
+                axis = k;
+            }
+        }
+        t_out = std::max(t_out, t);
+        if (!visit(v, t, t_out)) return;
+        v[axis] += direction[axis] > 0.0 ? 1 : -1;
+        if (v[axis] < 0 || v[axis] >= side) return;
+        t = t_out;
+    }
+}
+
+double opacity(double coverage, double chord) {
+    return 1.0 - std::pow(1.0 - coverage * (1.0 - FULL_COVERAGE_TRANSMITTANCE), chord);
+}
+
+/// Trilinear fetch between voxel centres; outside the root cube there is nothing.
+dvec3 filtered_normal(const DenseVoxels& voxels, const dvec3& point) {
+    const dvec3 p = point - 0.5;
+    const ivec3 low = ivec3(glm::floor(p));
+    const dvec3 f = p - dvec3(low);
+    dvec3 sum(0.0);
+    for (int corner = 0; corner < 8; ++corner) {
+        const ivec3 d(corner & 1, corner >> 1 & 1, corner >> 2);
+        const ivec3 v = low + d;
+        const dvec3 w = glm::mix(1.0 - f, f, dvec3(d));
+        const bool inside = glm::all(glm::greaterThanEqual(v, ivec3(0))) &&
+                            glm::all(glm::lessThan(v, ivec3(voxels.side)));
+        sum += w.x * w.y * w.z * (inside ? voxels.normal[voxels.index(v)] : rounded_normal(dvec3(0.0)));
+    }
+    return sum;
+}
+
+Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direction) {
+    Hit hit;
+    cross_voxels(voxels.side, eye, direction, 1e30, [&](const ivec3& v, double t_in, double t_out) {
+        const double coverage = voxels.coverage[voxels.index(v)];
+        if (coverage == 0.0) return true;
+        const double weight = hit.transmittance * opacity(coverage, t_out - t_in);
+        const double middle = 0.5 * (t_in + t_out);
+        const dvec3 normal = filtered_normal(voxels, eye + direction * middle);
+        hit.normal += weight * normal / std::max(glm::length(normal), 1e-3);
+        if (weight > hit.best_weight) {
+            hit.best_weight = weight;
+            hit.depth = middle;
+        }
+        hit.transmittance -= weight;
+        return hit.transmittance > OPAQUE_TRANSMITTANCE;
+    });
+    if (hit.transmittance <= OPAQUE_TRANSMITTANCE) hit.transmittance = 0.0;
+    return hit;
+}
+
+double shadow_ray(const DenseVoxels& voxels, const dvec3& start, const dvec3& direction, double reach) {
+    double visibility = 1.0;
+    bool leaving = true;
+    cross_voxels(voxels.side, start, direction, reach, [&](const ivec3& v, double t_in, double t_out) {
+        const double coverage = voxels.coverage[voxels.index(v)];
+        leaving = leaving && coverage > 0.0 && t_in < 2.0;
+        if (coverage == 0.0 || leaving) return true;
+        visibility *= 1.0 - opacity(coverage, t_out - t_in);
+        return visibility > OPAQUE_TRANSMITTANCE;
+    });
+    return visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
+}
+
+double srgb(double c) {
+    c = std::clamp(c, 0.0, 1.0);
+    return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+}
+
+}  // namespace
+
+DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution) {
+    const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
+    DenseVoxels out;
+    out.side = resolution;
+    out.grid = voxelizer::grid_around(snapshot.bounds, resolution);
+    voxelizer::Surface surface = voxelizer::build_surface(scene, snapshot, out.grid, {.attributes = true});
+    const int fine_level = surface.grid.level() + 2;
+    std::vector<Gathered> all(std::size_t(resolution) * std::size_t(resolution) * std::size_t(resolution));
+    voxelizer::Surface one = surface;
+    for (const voxelizer::SurfaceChunk& chunk : surface.chunks) {
+        one.chunks = {chunk};
+        for (const interop::SurfaceTriangle& triangle : chunk.triangles) {
+            one.chunks[0].triangles = {triangle};
+            one.triangle_count = 1;
+            gather(one, fine_level, resolution, all);
+        }
+    }
+    for (const Gathered& g : all) {
+        const double coverage = coverage_of(g);
+        const double length = glm::length(g.normal);
+        out.coverage.push_back(coverage);
+        out.normal.push_back(rounded_normal(length > 0.0 ? g.normal / length * coverage : dvec3(0.0)));
+    }
+    return out;
+}
+
+renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& view) {
+    auto place = [&](const dvec3& world) { return (world - voxels.grid.origin) / voxels.grid.voxel_size; };
+    const dvec3 eye = place(view.camera.eye);
+    const dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
+    const dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
+    const dvec3 up = glm::cross(right, forward);
+    const double half_height = std::tan(0.5 * view.camera.yfov);
+    const double half_width = half_height * view.width / view.height;
+    renderer::Image image{view.width, view.height, {}};
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const double px = (x + 0.5) / view.width * 2.0 - 1.0;
+            const double py = (y + 0.5) / view.height * 2.0 - 1.0;
+            const dvec3 direction = glm::normalize(forward + px * half_width * right - py * half_height * up);
+            const Hit hit = primary_ray(voxels, eye, direction);
+            const double alpha = 1.0 - hit.transmittance;
+            dvec3 color(view.background);
+            if (alpha > 0.0) {
+                dvec3 normal = glm::length(hit.normal) < 1e-6 ? -direction : glm::normalize(hit.normal);
+                if (glm::dot(normal, direction) > 0.0) normal = -normal;
+                const dvec3 point = eye + direction * hit.depth;
+                auto to_light = [&](const dvec3& from) {
+                    return view.light.positional ? glm::normalize(place(view.light.position) - from)
+                                                 : glm::normalize(view.light.towards);
+                };
+                const double facing = std::max(glm::dot(normal, to_light(point)), 0.0);
+                double visibility = 1.0;
+                if (view.shadow == renderer::Shadow::hard && facing > 0.0 && alpha >= 1.0 / 512.0) {
+                    const dvec3 start = point + normal;
+                    const double reach = view.light.positional
+                                             ? glm::length(place(view.light.position) - start)
+                                             : 1e30;
+                    visibility = shadow_ray(voxels, start, to_light(start), reach);
+                }
+                const double ambient = view.light.ambient;
+                const dvec3 light = dvec3(view.light.color) * (ambient * (0.75 + 0.25 * normal.y) +
+                                                               (1.0 - ambient) * facing * visibility);
+                color = alpha * light + hit.transmittance * dvec3(view.background);
+            }
+            for (int k = 0; k < 3; ++k) image.rgba.push_back(std::uint8_t(std::lround(255.0 * srgb(color[k]))));
+            image.rgba.push_back(std::uint8_t(std::lround(255.0 * std::clamp(alpha, 0.0, 1.0))));
+        }
+    }
+    return image;
+}
+
+}  // namespace cairn::testing
