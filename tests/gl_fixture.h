@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "gl/context.h"
+
+namespace cairn::testing {
+
+/// A test with an OpenGL context of its own and KHR_debug on. It fails when OpenGL reported an error or
+/// undefined behaviour that the test did not take out of the log itself.
+class GlTest : public ::testing::Test {
+protected:
+    void SetUp() override {
+        context_ = gl::create_context({.kind = gl::ContextKind::automatic, .debug = true});
+    }
+    void TearDown() override {
+        for (const std::string& message : context_->debug_log().take())
+            ADD_FAILURE() << "OpenGL: " << message;
+    }
+
+    [[nodiscard]] gl::Context& context() { return *context_; }
+
+private:
+    std::unique_ptr<gl::Context> context_;
+};
+
+}  // namespace cairn::testing

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# with_xvfb.sh COMMAND [ARGUMENT ...]: runs a command on a virtual display of its own, and answers with its exit code.
+set -euo pipefail
+
+scratch=$(mktemp -d)
+server=
+clean_up() {
+  if [ -n "$server" ]; then
+    kill "$server" 2>/dev/null || true
+    wait "$server" 2>/dev/null || true
+  fi
+  rm -rf "$scratch"
+}
+trap clean_up EXIT
+
+# Xvfb picks a free display by itself, and writes its number when it is ready.
+mkfifo "$scratch/display"
+Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3>"$scratch/display" 2>"$scratch/log" &
+server=$!
+if ! read -r -t 30 number <"$scratch/display"; then
+  echo "Xvfb did not start:" >&2
+  cat "$scratch/log" >&2
+  exit 1
+fi
+
+unset WAYLAND_DISPLAY
+DISPLAY=":$number" "$@"
