@@ -37,7 +37,8 @@ inline std::size_t width_of(const std::string& type) {
 }
 
 inline void write_bytes(const std::filesystem::path& path, const void* data, std::size_t size) {
-    std::ofstream(path, std::ios::binary).write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+    std::ofstream(path, std::ios::binary)
+        .write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
 }
 
 /// A glTF file under construction. `json` is open to any change, good or bad.
@@ -52,7 +53,8 @@ struct GltfFile {
     }
 
     int add_view(const Bytes& bytes, int stride = 0) {
-        while (binary.size() % 4 != 0) binary.push_back(0);
+        while (binary.size() % 4 != 0)
+            binary.push_back(0);
         Json view = {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes.size()}};
         if (stride != 0) view["byteStride"] = stride;
         binary.insert(binary.end(), bytes.begin(), bytes.end());
@@ -101,12 +103,15 @@ struct GltfFile {
 
     [[nodiscard]] Bytes glb() const {
         std::string text = with_buffer("").dump();
-        while (text.size() % 4 != 0) text += ' ';
+        while (text.size() % 4 != 0)
+            text += ' ';
         Bytes padded = binary;
-        while (padded.size() % 4 != 0) padded.push_back(0);
+        while (padded.size() % 4 != 0)
+            padded.push_back(0);
         Bytes file;
         const auto put = [&](std::size_t number) {
-            for (unsigned shift = 0; shift < 32; shift += 8) file.push_back(static_cast<std::uint8_t>(number >> shift));
+            for (unsigned shift = 0; shift < 32; shift += 8)
+                file.push_back(static_cast<std::uint8_t>(number >> shift));
         };
         const std::size_t binary_bytes = padded.empty() ? 0 : 8 + padded.size();
         put(0x46546C67);
@@ -128,7 +133,8 @@ struct GltfFile {
     }
 };
 
-/// A PNG whose data is stored, not compressed: `bits` 8 or 16, RGBA, all texels alike, or with raw bytes of your own.
+/// A PNG whose data is stored, not compressed: `bits` 8 or 16, RGBA, all texels alike, or with raw bytes of
+/// your own.
 class PngWriter {
 public:
     static Bytes make(std::uint32_t width, std::uint32_t height, int bits, const Bytes& rows) {
@@ -145,7 +151,8 @@ public:
 
 private:
     static void put(Bytes& out, std::uint32_t number) {
-        for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(number >> shift));
+        for (int shift = 24; shift >= 0; shift -= 8)
+            out.push_back(static_cast<std::uint8_t>(number >> shift));
     }
 
     static Bytes stored(const Bytes& data) {
@@ -177,7 +184,8 @@ private:
         std::uint32_t crc = 0xFFFFFFFF;
         for (const std::uint8_t byte : checked) {
             crc ^= byte;
-            for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+            for (int bit = 0; bit < 8; ++bit)
+                crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
         }
         file.insert(file.end(), checked.begin(), checked.end());
         put(file, ~crc);

@@ -29,7 +29,9 @@ glm::dvec2 pair_or(const tinygltf::Value& object, const char* key, double fallba
     return {numbers.Get(0).GetNumberAsDouble(), numbers.Get(1).GetNumberAsDouble()};
 }
 
-/// KHR_texture_transform: translation * rotation * scale.
+/// KHR_texture_transform: translation * rotation * scale. A positive angle turns counter-clockwise where v
+/// points down, as the text of the extension, its sample model and the other readers have it; the matrix
+/// printed beside that text turns the other way (https://github.com/KhronosGroup/glTF/issues/1563).
 void apply_transform(const std::string& where, const tinygltf::Value& transform, TextureUse& use) {
     const glm::dvec2 offset = pair_or(transform, "offset", 0.0);
     const glm::dvec2 scale = pair_or(transform, "scale", 1.0);
@@ -37,8 +39,8 @@ void apply_transform(const std::string& where, const tinygltf::Value& transform,
     const double c = std::cos(rotation);
     const double s = std::sin(rotation);
     use.uv_from_mesh =
-        glm::mat3(glm::dmat3(glm::dvec3(c * scale.x, s * scale.x, 0.0),
-                             glm::dvec3(-s * scale.y, c * scale.y, 0.0), glm::dvec3(offset, 1.0)));
+        glm::mat3(glm::dmat3(glm::dvec3(c * scale.x, -s * scale.x, 0.0),
+                             glm::dvec3(s * scale.y, c * scale.y, 0.0), glm::dvec3(offset, 1.0)));
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row)
             if (!std::isfinite(use.uv_from_mesh[column][row]))
