@@ -58,7 +58,7 @@ void Context::load_functions(void* (*get_proc_address)(const char*), bool debug)
     if (version < GLAD_MAKE_VERSION(4, 5)) {
         throw Error(Fault::context, fmt::format("driver \"{}\"", text_of(GL_RENDERER)),
                     fmt::format("OpenGL 4.5 core is needed, it offers {}", text_of(GL_VERSION)),
-                    "update the driver, or choose --context osmesa (software)");
+                    "update the driver, or choose another --context");
     }
     if (debug) debug_log_->attach();
 }

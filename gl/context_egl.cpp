@@ -110,6 +110,11 @@ private:
         if (debug) attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
         attributes.push_back(EGL_NONE);
         context_ = egl_.create_context(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+        // Without 4.5, whatever there is can at least say its name: load_functions refuses it with that.
+        const std::array<EGLint, 1> any = {EGL_NONE};
+        if (context_ == EGL_NO_CONTEXT) {
+            context_ = egl_.create_context(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, any.data());
+        }
         if (context_ == EGL_NO_CONTEXT) refuse("it offers no OpenGL 4.5 core context");
         EglContext::make_current();
         load_functions(reinterpret_cast<void* (*)(const char*)>(egl_.get_proc_address), debug);
@@ -138,7 +143,8 @@ std::unique_ptr<Context> create_egl_context(bool debug) {
             if (!is_software_driver()) return context;
             software_display = display;
         } catch (const Error& error) {
-            tried += fmt::format("; {}", error.what());
+            // Several displays of one driver say the same.
+            if (tried.find(error.what()) == std::string::npos) tried += fmt::format("; {}", error.what());
         }
     }
     // Contexts are made one at a time: two of one driver at once would share the function pointers.

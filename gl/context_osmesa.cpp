@@ -27,6 +27,9 @@ public:
         const auto create =
             library_.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
         context_ = create(attributes.data(), nullptr);
+        // Without 4.5, whatever there is can at least say its name: load_functions refuses it with that.
+        const std::array<int, 3> any = {OSMESA_FORMAT, OSMESA_RGBA, 0};
+        if (context_ == nullptr) context_ = create(any.data(), nullptr);
         if (context_ == nullptr) {
             throw Error(Fault::context, "OSMesa", "it offers no OpenGL 4.5 core context",
                         "install Mesa 17 or later, or choose --context egl");
