@@ -4,10 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <random>
 #include <string>
 #include <tuple>
 
@@ -17,26 +14,12 @@
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "scenes/write_glb.h"
+#include "tests/scratch_folder.h"
 
 namespace cairn::scenes {
 namespace {
 
-/// A folder of its own for a test, removed at the end.
-class ScratchFolder {
-public:
-    ScratchFolder()
-        : path_(std::filesystem::temp_directory_path() /
-                ("cairn-" + std::to_string(std::random_device{}()))) {
-        std::filesystem::create_directory(path_);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    ~ScratchFolder() { std::filesystem::remove_all(path_); }
-    [[nodiscard]] std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
-private:
-    std::filesystem::path path_;
-};
+using test::ScratchFolder;
 
 std::vector<std::string> all_names() {
     std::vector<std::string> names;
@@ -153,8 +136,8 @@ TEST_P(EveryBuiltin, HasTheNameThatItWasAskedBy) {
 
 TEST_P(EveryBuiltin, ComesBackFromAFileUnchanged) {
     const ScratchFolder folder;
-    write_glb(scene_, folder / "scene.glb");
-    const Scene back = load((folder / "scene.glb").string());
+    write_glb(scene_, folder.file("scene.glb"));
+    const Scene back = load(folder.file("scene.glb"));
     EXPECT_EQ(hash_of(back), hash_of(scene_));
     EXPECT_TRUE(back.warnings.empty()) << back.warnings.front();
 
@@ -310,8 +293,8 @@ Scene make_medley() {
 TEST(WriteGlb, KeepsPointsLinesMatricesAndInstances) {
     const Scene scene = make_medley();
     const ScratchFolder folder;
-    write_glb(scene, folder / "medley.glb");
-    const Scene back = load((folder / "medley.glb").string());
+    write_glb(scene, folder.file("medley.glb"));
+    const Scene back = load(folder.file("medley.glb"));
     const Snapshot here = take_snapshot(scene);
     const Snapshot there = take_snapshot(back);
     EXPECT_EQ(there.triangle_count, here.triangle_count);
@@ -330,9 +313,8 @@ TEST(WriteGlb, KeepsPointsLinesMatricesAndInstances) {
 TEST(WriteGlb, LengthsInTheFileAreThoseOfTheFile) {
     const ScratchFolder folder;
     for (const std::string& name : all_names()) {
-        write_glb(make_builtin(name), folder / "scene.glb");
-        std::ifstream stream(folder / "scene.glb", std::ios::binary);
-        const std::string file{std::istreambuf_iterator<char>(stream), {}};
+        write_glb(make_builtin(name), folder.file("scene.glb"));
+        const std::string file = test::read_text(folder.file("scene.glb"));
         const auto word = [&](std::size_t offset) {
             std::uint32_t value = 0;
             std::memcpy(&value, file.data() + offset, sizeof value);
@@ -353,8 +335,8 @@ TEST(WriteGlb, AppliesTheTextureTransform) {
     scene.meshes[0].primitives.erase(scene.meshes[0].primitives.begin());
     scene.materials[1].uv_from_mesh = glm::mat3(2, 0, 0, 0, 0.5F, 0, 0.25F, 0.75F, 1);
     const ScratchFolder folder;
-    write_glb(scene, folder / "scene.glb");
-    const Scene back = load((folder / "scene.glb").string());
+    write_glb(scene, folder.file("scene.glb"));
+    const Scene back = load(folder.file("scene.glb"));
     const glm::vec2 before = scene.meshes[0].primitives[0].texcoords[1];
     EXPECT_EQ(back.meshes[0].primitives[0].texcoords[1],
               glm::vec2(2, 0.5F) * before + glm::vec2(0.25F, 0.75F));
@@ -363,13 +345,13 @@ TEST(WriteGlb, AppliesTheTextureTransform) {
 
 TEST(WriteGlb, FaultLeavesWhatStoodThere) {
     const ScratchFolder folder;
-    write_glb(make_builtin("cornell"), folder / "scene.glb");
-    const auto size = std::filesystem::file_size(folder / "scene.glb");
+    write_glb(make_builtin("cornell"), folder.file("scene.glb"));
+    const auto size = std::filesystem::file_size(folder.file("scene.glb"));
     Scene broken = make_builtin("knot");
     broken.meshes[0].primitives[0].positions[7].y = std::nanf("");
-    EXPECT_THROW(write_glb(broken, folder / "scene.glb"), Error);
-    EXPECT_EQ(std::filesystem::file_size(folder / "scene.glb"), size);
-    EXPECT_THROW(write_glb(make_builtin("knot"), folder / "missing" / "scene.glb"), Error);
+    EXPECT_THROW(write_glb(broken, folder.file("scene.glb")), Error);
+    EXPECT_EQ(std::filesystem::file_size(folder.file("scene.glb")), size);
+    EXPECT_THROW(write_glb(make_builtin("knot"), folder.path() / "missing" / "scene.glb"), Error);
 }
 
 }  // namespace

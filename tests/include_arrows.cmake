@@ -1,6 +1,7 @@
 # Reads the project's #includes; links nothing of it.
-add_executable(include_arrows_test include_arrows_test.cpp)
-target_link_libraries(include_arrows_test PRIVATE fmt::fmt GTest::gtest_main)
-target_compile_definitions(include_arrows_test PRIVATE CAIRN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-cairn_options(include_arrows_test)
-gtest_discover_tests(include_arrows_test)
+cairn_test(include_arrows_test
+  SOURCES include_arrows_test.cpp scratch_folder.h
+  LIBRARIES fmt::fmt
+  DEFINITIONS CAIRN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+# The only thing of ours that it includes lies in tests/.
+target_include_directories(include_arrows_test PRIVATE ${PROJECT_SOURCE_DIR})
