@@ -24,16 +24,16 @@ std::string footer() {
     return text;
 }
 
-/// Says what CLI11 leaves unsaid or says oddly.
-void check_verb(const CLI::App& command, int argc, char** argv) {
+/// Refuses a missing or unknown verb, for which CLI11 has odd words.
+void check_verb(const CLI::App& command, const char* argument) {
+    if (argument != nullptr && argument[0] == '-') return;  // an option
     std::string verbs;
     for (const CLI::App* verb : command.get_subcommands([](const CLI::App*) { return true; })) {
-        if (argc > 1 && verb->get_name() == argv[1]) return;
+        if (argument != nullptr && verb->get_name() == argument) return;
         verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
     }
-    if (argc > 1 && argv[1][0] == '-') return;
     throw Error(Fault::usage, "",
-                argc < 2 ? "a verb is missing" : fmt::format("there is no verb \"{}\"", argv[1]),
+                argument == nullptr ? "a verb is missing" : fmt::format("there is no verb \"{}\"", argument),
                 fmt::format("verbs: {}; \"cairn --help\" tells more", verbs));
 }
 
@@ -58,11 +58,11 @@ ExitCode run(int argc, char** argv) {
     add_check(command, chosen);
     add_render(command, chosen);
     add_export(command, chosen);
-    command.require_subcommand(1);
+    command.require_subcommand(0, 1);
     command.set_version_flag("--version", "cairn " CAIRN_VERSION);
     command.get_formatter()->column_width(38);
     command.footer(footer());
-    check_verb(command, argc, argv);
+    check_verb(command, argc > 1 ? argv[1] : nullptr);
     try {
         command.parse(argc, argv);
     } catch (const CLI::Success& asked_for_help) {
@@ -71,6 +71,7 @@ ExitCode run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return report_usage(command, error);
     }
+    if (!chosen) check_verb(command, nullptr);
     return chosen();
 }
 

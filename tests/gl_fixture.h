@@ -7,7 +7,7 @@
 
 #include "gl/context.h"
 
-namespace cairn::testing {
+namespace cairn::test {
 
 /// A test with an OpenGL context of its own and KHR_debug on. It fails when OpenGL reported an error or
 /// undefined behaviour that the test did not take out of the log itself.
@@ -27,4 +27,4 @@ private:
     std::unique_ptr<gl::Context> context_;
 };
 
-}  // namespace cairn::testing
+}  // namespace cairn::test

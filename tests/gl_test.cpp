@@ -24,9 +24,9 @@
 namespace cairn::gl {
 namespace {
 
-using cairn::testing::GlTest;
-using cairn::testing::ScratchFolder;
-using cairn::testing::write_text;
+using cairn::test::GlTest;
+using cairn::test::ScratchFolder;
+using cairn::test::write_text;
 
 /// What `work` throws; a failure when it throws nothing.
 template <typename Work>

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cairn::testing {
+namespace cairn::test {
 
 /// A folder of its own for a test, removed at the end.
 class ScratchFolder {
@@ -47,4 +47,4 @@ inline void write_text(const std::filesystem::path& path, const std::string& tex
     std::ofstream(path, std::ios::binary) << text;
 }
 
-}  // namespace cairn::testing
+}  // namespace cairn::test

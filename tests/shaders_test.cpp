@@ -27,10 +27,10 @@
 namespace cairn::gl {
 namespace {
 
-using cairn::testing::GlTest;
-using cairn::testing::read_text;
-using cairn::testing::ScratchFolder;
-using cairn::testing::write_text;
+using cairn::test::GlTest;
+using cairn::test::read_text;
+using cairn::test::ScratchFolder;
+using cairn::test::write_text;
 
 /// One way in which an entry point is compiled.
 struct Case {
