@@ -34,8 +34,8 @@ struct BitGrid {
     [[nodiscard]] bool operator==(const BitGrid&) const = default;
 };
 
-/// One bit a voxel at every level, each level the OR of the finer one (Forest et al. 2009, section 2.3, Figure 4b).
-/// Level 0 is the finest; sizes halve, rounded up, until one voxel is left.
+/// One bit a voxel at every level, each level the OR of the finer one (Forest et al. 2009, section 2.3,
+/// Figure 4b). Level 0 is the finest; sizes halve, rounded up, until one voxel is left.
 class BitmaskPyramid {
 public:
     BitmaskPyramid() = default;

@@ -12,9 +12,10 @@ namespace cairn::voxelizer {
 /// Where voxels lie in the world: voxel (i, j, k) is the closed box from origin + (i, j, k) * voxel_size to
 /// origin + (i+1, j+1, k+1) * voxel_size. World to grid is a uniform scale and a translation.
 ///
-/// The grid is the low corner of its *root cube*, whose side is the next power of two of voxels. The root cube carries
-/// the *lattice*: 2^24 units a side. A vertex is rounded once to the lattice, and the rounded triangle is the triangle
-/// (docs/decisions.md), so voxel planes are whole lattice numbers at every level, whatever the resolution.
+/// The grid is the low corner of its *root cube*, whose side is the next power of two of voxels. The root
+/// cube carries the *lattice*: 2^24 units a side. A vertex is rounded once to the lattice, and the rounded
+/// triangle is the triangle (docs/decisions.md), so voxel planes are whole lattice numbers at every level,
+/// whatever the resolution.
 struct Grid {
     glm::dvec3 origin{0.0};
     double voxel_size = 1.0;
@@ -29,15 +30,16 @@ struct Grid {
     [[nodiscard]] glm::dvec3 world_from_lattice(const glm::dvec3& lattice) const;
 };
 
-/// The default grid: a cube around the bounds, centred, with one empty voxel left on each side of the longest axis
-/// (none when resolution < 3). Empty bounds give a unit cube at the world's origin; a point, a cube of side 1 around it.
+/// The default grid: a cube around the bounds, centred, with one empty voxel left on each side of the longest
+/// axis (none when resolution < 3). Empty bounds give a unit cube at the world's origin; a point, a cube of
+/// side 1 around it.
 [[nodiscard]] Grid grid_around(const scenes::Bounds& bounds, int resolution);
 
 /// A cubic grid of `resolution` over given bounds (`--bounds`): low corner kept, side = longest axis.
 [[nodiscard]] Grid grid_over(const scenes::Bounds& bounds, int resolution);
 
-/// A box of voxels at one level of a root cube: voxel side 2^(24 - level) lattice units, 2^level voxels across the cube.
-/// May reach outside the cube (a brick's border does).
+/// A box of voxels at one level of a root cube: voxel side 2^(24 - level) lattice units, 2^level voxels
+/// across the cube. May reach outside the cube (a brick's border does).
 struct Region {
     int level = 0;
     glm::ivec3 origin{0};

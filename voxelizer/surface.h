@@ -15,9 +15,10 @@ namespace cairn::voxelizer {
 
 /// At most SURFACE_CHUNK_TRIANGLES triangles and the vertices they use.
 struct SurfaceChunk {
-    std::vector<std::array<std::int32_t, 3>> positions;       ///< lattice units, within [-2^24, 2^25]
+    std::vector<std::array<std::int32_t, 3>> positions;  ///< lattice units, within [-2^24, 2^25]
     std::vector<interop::SurfaceTriangle> triangles;
-    std::vector<interop::SurfaceAttributes> attributes;       ///< one a vertex, or empty (SurfaceOptions::attributes)
+    std::vector<interop::SurfaceAttributes>
+        attributes;  ///< one a vertex, or empty (SurfaceOptions::attributes)
 };
 
 /// A triangle that reaches further than 2^24 units past the root cube, whose products pass 53 bits.
@@ -29,9 +30,10 @@ struct FarTriangle {
     std::uint32_t material;
 };
 
-/// The triangles of a snapshot on the lattice of a grid: what every voxelization method, the exact reference and the
-/// brick producer share, so that they speak of the same triangles. Segments and points are degenerate triangles.
-/// Triangles whose bounding box misses the root cube, and masked ones that no texel can show, are left out.
+/// The triangles of a snapshot on the lattice of a grid: what every voxelization method, the exact reference
+/// and the brick producer share, so that they speak of the same triangles. Segments and points are degenerate
+/// triangles. Triangles whose bounding box misses the root cube, and masked ones that no texel can show, are
+/// left out.
 struct Surface {
     Grid grid;
     std::vector<SurfaceChunk> chunks;
@@ -39,17 +41,18 @@ struct Surface {
     std::vector<interop::SurfaceMaterial> materials;  ///< at least one
     std::vector<std::uint32_t> texels;                ///< RGBA8 of the base-colour images that are used
     std::uint64_t triangle_count = 0;
-    bool has_color = false;   ///< any base colour other than opaque white: factor, texture or vertex colour
-    bool has_mask = false;    ///< any alpha-masked material
+    bool has_color = false;  ///< any base colour other than opaque white: factor, texture or vertex colour
+    bool has_mask = false;   ///< any triangle that its mask cuts: those wholly shown or hidden are told apart here
 };
 
 struct SurfaceOptions {
-    bool attributes = false;  ///< normals, colours and texture coordinates too (the brick producer needs them)
+    bool attributes =
+        false;  ///< normals, colours and texture coordinates too (the brick producer needs them)
 };
 
 /// @throws Error  Fault::memory when it would not fit in memory; Fault::input past the lattice's limits.
-[[nodiscard]] Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const Grid& grid,
-                                    const SurfaceOptions& options = {});
+[[nodiscard]] Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
+                                    const Grid& grid, const SurfaceOptions& options = {});
 
 /// A surface in the driver's memory.
 struct GpuSurfaceChunk {
@@ -63,6 +66,8 @@ struct GpuSurface {
     std::vector<FarTriangle> far_triangles;
     gl::Buffer materials;
     gl::Buffer texels;
+    std::vector<interop::SurfaceMaterial> host_materials;
+    std::vector<std::uint32_t> host_texels;  ///< only if far triangles may need them
     bool has_color = false;
     bool has_mask = false;
 

@@ -6,7 +6,6 @@
 
 #include "gl/buffer.h"
 #include "gl/program.h"
-#include "gl/timer.h"
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/grid.h"
 #include "voxelizer/surface.h"
@@ -22,7 +21,7 @@ public:
     explicit Voxelizer(const gl::ShaderSource& shaders = {});
 
     /// @param subset  global triangle numbers, or none for all. Must hold every triangle that meets the region for the
-    ///                bits to be right; others cost time only.
+    ///                bits to be right; others cost time only. Far triangles are always marked.
     /// @throws Error  Fault::memory when the region's bits pass the driver's shader-storage limit: the message says
     ///                what would fit.
     [[nodiscard]] BitGrid voxelize(const GpuSurface& surface, const Region& region,
@@ -32,10 +31,27 @@ public:
     [[nodiscard]] BitmaskPyramid voxelize_pyramid(const GpuSurface& surface, const Region& region,
                                                   std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
-    /// The voxelization alone of the last call (no upload, no read-back, no pyramid), on the driver's clock.
+    /// The voxelization alone of the last call (no upload, no read-back, no pyramid), from an idle driver to an idle
+    /// driver by the wall clock: the timer queries of llvmpipe do not see compute work.
     [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
 
 private:
+    /// Marks the region in `bits_`.
+    void mark(const GpuSurface& surface, const Region& region, std::optional<std::span<const std::uint32_t>> subset);
+    void mark_chunk(std::size_t count, bool has_subset);
+    void mark_queued(unsigned queue, unsigned count);
+    void set_region(const gl::Program& program) const;
+    const gl::Program& mark_masked();
+    [[nodiscard]] BitGrid read_bits(const gl::Buffer& bits, const glm::ivec3& size) const;
+
+    gl::ShaderSource shaders_;
+    gl::Program mark_small_;
+    gl::Program mark_large_;
+    std::optional<gl::Program> mark_masked_;  ///< built when a surface first needs it
+    gl::Program halve_;
+    gl::Buffer queue_;
+    gl::Buffer bits_;
+    Region region_;
     double last_milliseconds_ = 0.0;
 };
 

@@ -9,6 +9,13 @@
 #define SSBO_SURFACE_MATERIALS 3   // SurfaceMaterial
 #define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each
 
+// The voxelizer's own.
+#define SSBO_VOXEL_BITS 5    // BitGrid::words
+#define SSBO_VOXEL_QUEUE 6   // VOXEL_QUEUE_* counters, then the queues
+#define SSBO_VOXEL_SUBSET 7  // triangles to mark, when not all
+#define SSBO_HALVE_FINE 0    // BitGrid::words of a level, and of the next coarser one (pass that reads no surface)
+#define SSBO_HALVE_COARSE 1
+
 // The producer's own (beside the surface's 0 to 4).
 #define SSBO_BRICK_PAIRS 5    // BrickPair: which triangle touches which tile of the batch
 #define SSBO_BRICK_TILES 6    // BrickTile: the tiles of the batch

@@ -9,6 +9,26 @@
 // shader-storage limit in use (128 MiB). A triangle's global number is chunk * SURFACE_CHUNK_TRIANGLES + local.
 #define SURFACE_CHUNK_TRIANGLES 2097152
 
+// The voxelizer marks so many triangles in one pass: bounds its queues and the time of a dispatch.
+#define VOXEL_BATCH_TRIANGLES 262144
+// Triangles of at most so many rows are marked by the thread that meets them; others wait in a queue for a workgroup,
+// or, past VOXEL_LARGE_ROWS, for many.
+#define VOXEL_SMALL_ROWS 64
+#define VOXEL_LARGE_ROWS 4096
+#define VOXEL_GROUP 64
+#define VOXEL_QUEUE_LARGE 0
+#define VOXEL_QUEUE_HUGE 1
+#define VOXEL_QUEUE_MASKED_LARGE 2  // those that a mask cuts
+#define VOXEL_QUEUE_MASKED_HUGE 3
+#define VOXEL_QUEUE_COUNT 4
+
+// Alpha masks (shaders/voxelize/alpha_mask.glsl, voxelizer/exact_mask.h). Texture coordinates are rounded to
+// 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a texel when a mask is read.
+#define TEXCOORD_UNITS 67108864.0
+#define TEXCOORD_LIMIT 1048576.0
+#define TEXEL_UNITS 256
+#define TEXEL_COORDINATE_LIMIT 33554432.0
+
 // Bits of SurfaceMaterial.flags
 #define MATERIAL_WRAP_S_SHIFT 0  // 2 bits: 0 repeat, 1 mirrored repeat, 2 clamp to edge
 #define MATERIAL_WRAP_T_SHIFT 2

@@ -32,7 +32,7 @@ struct SurfaceMaterial {
     uint height;
     uint flags;           // MATERIAL_*
     float alpha_cutoff;
-    float padding0;
+    uint alpha_threshold;  // visible: texel alpha * vertex alpha * 256 >= this, both alphas 0 to 255
     float padding1;
     float padding2;
 };

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "voxelizer/bit_grid.h"
+#include "voxelizer/grid.h"
+#include "voxelizer/surface.h"
+
+namespace cairn::reference {
+
+/// The truth: every voxel of the region whose closed box meets a closed triangle of the surface, as the alpha masks
+/// leave it. Embree finds candidates, exact predicates in 128-bit integers decide; runs on all cores.
+/// @throws Error  Fault::memory when Embree cannot hold the triangles.
+[[nodiscard]] voxelizer::BitGrid exact_voxels(const voxelizer::Surface& surface, const voxelizer::Region& region);
+
+struct Comparison {
+    std::uint64_t occupied = 0;  ///< in the truth
+    std::uint64_t missing = 0;   ///< occupied in the truth only
+    std::uint64_t extra = 0;     ///< occupied in ours only
+    std::vector<glm::ivec3> first_different;  ///< at most eight, by z, y, x
+};
+
+/// Both grids must have one size.
+[[nodiscard]] Comparison compare(const voxelizer::BitGrid& ours, const voxelizer::BitGrid& truth);
+
+}  // namespace cairn::reference

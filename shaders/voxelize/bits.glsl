@@ -1,0 +1,23 @@
+// The region whose voxels are marked: one bit each, as in voxelizer/bit_grid.h.
+#include "interop/bindings.h"
+
+layout(std430, binding = SSBO_VOXEL_BITS) restrict buffer VoxelBits { uint voxel_bits[]; };
+
+uniform ivec3 region_origin;
+uniform ivec3 region_size;
+
+// Marks the voxels of a row from span.x to span.y; the row lies in the region, the span is cut to it.
+void mark_span(ivec2 row, ivec2 span) {
+    const int first = max(span.x - region_origin.x, 0);
+    const int last = min(span.y - region_origin.x, region_size.x - 1);
+    if (first > last) return;
+    const ivec2 place = row - region_origin.yz;
+    const int row_word = (place.y * region_size.y + place.x) * ((region_size.x + 31) >> 5);
+    const int last_word = last >> 5;
+    uint bits = 0xFFFFFFFFu << uint(first & 31);
+    for (int word = first >> 5; word <= last_word; ++word) {
+        if (word == last_word) bits &= 0xFFFFFFFFu >> uint(31 - (last & 31));
+        atomicOr(voxel_bits[row_word + word], bits);
+        bits = 0xFFFFFFFFu;
+    }
+}

@@ -1,0 +1,265 @@
+// Which voxels a closed triangle meets: exact on every driver.
+//
+//     ExactTriangle exact_triangle(ivec3 a, ivec3 b, ivec3 c, int shift)
+//         vertices on the lattice, within [-2^24, 2^25]; voxel side 2^shift lattice units
+//     t.low, t.high
+//         inclusive box of the voxels that its bounding box touches
+//     ivec2 row_span(ExactTriangle t, ivec2 row)
+//         the voxels of row (y, z) that it touches: an inclusive interval of x, within t.low.x and t.high.x; empty when
+//         its x > its y. The row must lie within t.low.yz and t.high.yz.
+//
+// Voxels are numbered in the whole root cube: voxel i spans [i, i + 1] * 2^shift. Boxes and triangles are closed:
+// contact counts. Segments and points are triangles too.
+//
+// Separating axes: Akenine-Möller 2001. Each axis that has an x bounds x from one side by a linear function of the row,
+// the others accept or reject the row (Schwarz and Seidel 2010, section 3). A projection of no area is replaced by its
+// longest side, there and back, so that both sides of its axis are tested.
+//
+// Two tiers. The filter works in float, in voxels from the corner t.low, where vertices are exact; u = 2^-24 is the
+// unit of rounding. Every bound is known to +-error, and where the whole voxels within that error differ, the row is in
+// doubt. Then the exact tier decides in double: each product and sum below is a whole number of at most 2^53 and thus
+// exact, fused or not. Edges are under 2^25.6, distances under 2^26, and a component of the normal is at most 9 * 2^48,
+// because twice the area of a triangle is at most that of its bounding box.
+
+const float FAR_AWAY = 1.0e30;
+const float SIDE_ERROR = 1.9073486328125e-6;    // 2^-19
+const double SPLIT = 67108864.0LF;              // 2^26
+
+// The three sides of a projection with an x, as bounds of x: at rows [r, r + 1] the bound nearest to the triangle's
+// outside is x - slope * (r - row).
+struct SideBounds {
+    vec3 x, row, slope;
+    bvec3 is_lower, is_upper;  // neither: parallel to x, where the bounding box says as much
+};
+
+struct ExactTriangle {
+    ivec3 a, b, c;
+    ivec3 low, high;
+    int shift;
+    dvec3 normal;       // (b - a) x (c - a)
+
+    bool filtered;      // no: it is too wide for floats, and every row is in doubt
+    vec3 side_y, side_z, side_offset;  // side * (y, z, 1) >= 0 where a row meets the inside of a side, +-SIDE_ERROR
+    SideBounds xy, xz;
+    float side_bounds_error;
+    vec3 plane;         // lowest x of the plane over a row: plane * (y, z, 1)
+    float plane_width;  // highest minus lowest
+    float plane_error;
+    bool has_plane;     // no: the plane is parallel to x
+};
+
+// Orders a projected triangle counter-clockwise: (-edge.y, edge.x) then points inwards. Of one without area, the
+// longest side there and back is left.
+void wind(inout ivec2 a, inout ivec2 b, inout ivec2 c, double twice_area) {
+    if (twice_area > 0.0LF) return;
+    if (twice_area < 0.0LF) {
+        const ivec2 swapped = b;
+        b = c;
+        c = swapped;
+        return;
+    }
+    const ivec2 ab = abs(b - a), bc = abs(c - b), ca = abs(a - c);
+    const int length_ab = ab.x + ab.y, length_bc = bc.x + bc.y, length_ca = ca.x + ca.y;
+    if (length_ab < max(length_bc, length_ca)) {
+        if (length_bc >= length_ca) a = c;
+        else b = c;
+    }
+    c = a;
+}
+
+// ---- The filter ----------------------------------------------------------------------------------------------------
+
+// Sides of a projection, counter-clockwise: edges a to b, b to c, c to a; one component of all three at a time.
+SideBounds side_bounds(vec3 x, vec3 row, vec3 next_x, vec3 next_row) {
+    SideBounds s;
+    const vec3 inward_x = row - next_row;
+    const vec3 inward_row = next_x - x;
+    s.is_lower = greaterThan(inward_x, vec3(0.0));
+    s.is_upper = lessThan(inward_x, vec3(0.0));
+    // The row's edge that is furthest inwards is r + 1 where the side faces up.
+    s.slope = inward_row / mix(inward_x, vec3(1.0), equal(inward_x, vec3(0.0)));
+    s.x = x;
+    s.row = row - vec3(greaterThan(inward_row, vec3(0.0)));
+    return s;
+}
+
+void prepare_sides(inout ExactTriangle t, vec3 y, vec3 z, vec3 next_y, vec3 next_z, vec2 size) {
+    t.side_y = z - next_z;
+    t.side_z = next_y - y;
+    // Scaled, so that one error serves all. Each of the terms, and their partial sums, are within +-2 after scaling,
+    // and at most ten roundings meet: 20 u < SIDE_ERROR.
+    const vec3 reach = abs(t.side_y) * size.x + abs(t.side_z) * size.y;
+    const bvec3 empty = equal(reach, vec3(0.0));
+    const vec3 scale = 1.0 / mix(reach, vec3(1.0), empty);
+    const vec3 nearest_y = y - vec3(greaterThan(t.side_y, vec3(0.0)));
+    const vec3 nearest_z = z - vec3(greaterThan(t.side_z, vec3(0.0)));
+    t.side_offset = mix(-(t.side_y * nearest_y + t.side_z * nearest_z) * scale, vec3(1.0), empty);
+    t.side_y *= scale;
+    t.side_z *= scale;
+}
+
+void prepare_plane(inout ExactTriangle t, vec3 a, vec3 size) {
+    t.has_plane = t.normal.x != 0.0LF;
+    const double divisor = t.has_plane ? t.normal.x : 1.0LF;
+    const vec2 slope = vec2(t.normal.yz / divisor);
+    const vec2 nearest = a.yz - vec2(greaterThan(slope, vec2(0.0)));
+    t.plane = vec3(-slope, a.x + slope.x * nearest.x + slope.y * nearest.y);
+    t.plane_width = abs(slope.x) + abs(slope.y);
+    // Terms and partial sums are within twice this reach; at most eight roundings meet: 16 u.
+    t.plane_error = 0.5 * SIDE_ERROR * (size.x + abs(slope.x) * size.y + abs(slope.y) * size.z);
+}
+
+void prepare_filter(inout ExactTriangle t) {
+    const ivec3 corner = t.low << t.shift;
+    const ivec3 furthest = max(max(t.a, t.b), t.c) - corner;
+    t.filtered = max(max(furthest.x, furthest.y), furthest.z) <= 1 << 24;
+
+    const float unit = 1.0 / float(1 << t.shift);
+    const vec3 size = vec3(t.high - t.low + 1);
+    ivec2 a = t.a.yz - corner.yz, b = t.b.yz - corner.yz, c = t.c.yz - corner.yz;
+    wind(a, b, c, t.normal.x);
+    vec3 u = vec3(a.x, b.x, c.x) * unit, v = vec3(a.y, b.y, c.y) * unit;
+    prepare_sides(t, u, v, u.yzx, v.yzx, size.yz + 1.0);
+
+    a = t.a.xy - corner.xy, b = t.b.xy - corner.xy, c = t.c.xy - corner.xy;
+    wind(a, b, c, t.normal.z);
+    u = vec3(a.x, b.x, c.x) * unit, v = vec3(a.y, b.y, c.y) * unit;
+    t.xy = side_bounds(u, v, u.yzx, v.yzx);
+
+    a = t.a.xz - corner.xz, b = t.b.xz - corner.xz, c = t.c.xz - corner.xz;
+    wind(a, b, c, -t.normal.y);
+    u = vec3(a.x, b.x, c.x) * unit, v = vec3(a.y, b.y, c.y) * unit;
+    t.xz = side_bounds(u, v, u.yzx, v.yzx);
+    // A bound within three sizes of the box is a vertex's x, plus a product of at most four sizes that has met eight
+    // roundings: 35 u. What is further out stays out.
+    t.side_bounds_error = 2.0 * SIDE_ERROR * size.x;
+
+    prepare_plane(t, vec3(t.a - corner) * unit, size + 1.0);
+}
+
+vec2 bounds_at(SideBounds s, float row) {
+    const vec3 x = s.x - s.slope * (row - s.row);
+    const vec3 lower = mix(vec3(-FAR_AWAY), x, s.is_lower);
+    const vec3 upper = mix(vec3(FAR_AWAY), x, s.is_upper);
+    return vec2(max(max(lower.x, lower.y), lower.z), min(min(upper.x, upper.y), upper.z));
+}
+
+// The span, or doubt about it.
+ivec2 filtered_row_span(ExactTriangle t, ivec2 row, out bool in_doubt) {
+    const vec2 r = vec2(row - t.low.yz);
+    const vec3 sides = t.side_y * r.x + t.side_z * r.y + t.side_offset;
+    const float side = min(min(sides.x, sides.y), sides.z);
+
+    const vec2 xy = bounds_at(t.xy, r.x);
+    const vec2 xz = bounds_at(t.xz, r.y);
+    const vec2 bounds = vec2(max(xy.x, xz.x), min(xy.y, xz.y));
+    const float plane_low = t.has_plane ? t.plane.x * r.x + t.plane.y * r.y + t.plane.z : -FAR_AWAY;
+    const float plane_high = t.has_plane ? plane_low + t.plane_width : FAR_AWAY;
+    const vec2 widest = vec2(max(bounds.x - t.side_bounds_error, plane_low - t.plane_error),
+                             min(bounds.y + t.side_bounds_error, plane_high + t.plane_error));
+    const vec2 narrowest = vec2(max(bounds.x + t.side_bounds_error, plane_low + t.plane_error),
+                                min(bounds.y - t.side_bounds_error, plane_high - t.plane_error));
+    // Closed voxel i touches [x, ...) from i = ceil(x) - 1 on.
+    const float last = float(t.high.x - t.low.x);
+    const vec2 wide = clamp(vec2(ceil(widest.x) - 1.0, floor(widest.y)), vec2(0.0, -1.0), vec2(last + 1.0, last));
+    const vec2 narrow = clamp(vec2(ceil(narrowest.x) - 1.0, floor(narrowest.y)), vec2(0.0, -1.0), vec2(last + 1.0, last));
+    const bool outside = side < -SIDE_ERROR || wide.x > wide.y;
+    in_doubt = !t.filtered || (!outside && (side < SIDE_ERROR || wide != narrow));
+    return outside ? ivec2(1, 0) : ivec2(wide) + t.low.x;
+}
+
+// ---- The exact tier ------------------------------------------------------------------------------------------------
+
+// Whether the row meets the inner side of the edge from p to q, both (y, z).
+bool meets_side(ivec2 p, ivec2 q, ivec2 row_low, int voxel_side) {
+    const ivec2 inward = ivec2(p.y - q.y, q.x - p.x);
+    const ivec2 innermost = row_low + voxel_side * ivec2(greaterThan(inward, ivec2(0)));
+    return double(inward.x) * double(innermost.x - p.x) + double(inward.y) * double(innermost.y - p.y) >= 0.0LF;
+}
+
+// Narrows a span of x by the edge from p to q, both (x, row), for the row from row_low.
+void narrow_by_side(inout ivec2 span, ExactTriangle t, ivec2 p, ivec2 q, int row_low) {
+    const ivec2 inward = ivec2(p.y - q.y, q.x - p.x);
+    if (inward.x == 0) return;
+    const int innermost = row_low + (inward.y > 0 ? 1 << t.shift : 0);
+    const double slope = double(inward.x);
+    const double rest = double(inward.y) * double(innermost - p.y);
+    // The voxel plane nearest to the bound: on which side of it the bound lies is then decided exactly.
+    const double bound = (double(p.x) - rest / slope) / double(1 << t.shift);
+    const int nearest = int(round(clamp(bound, double(t.low.x), double(t.high.x + 1))));
+    const bool inside = slope * double((nearest << t.shift) - p.x) + rest >= 0.0LF;
+    if (inward.x > 0) span.x = max(span.x, inside ? nearest - 1 : nearest);
+    else span.y = min(span.y, inside ? nearest : nearest - 1);
+}
+
+// Narrows a span of x by the plane. Its terms pass 53 bits: the normal is cut in two, n = high * SPLIT + low,
+// with |high| < 2^25.2 and |low| <= 2^25: three products of either and a distance add up to less than 2^53.
+void narrow_by_plane(inout ivec2 span, ExactTriangle t, ivec2 row_low) {
+    if (t.normal.x == 0.0LF) return;
+    const dvec3 normal = t.normal.x > 0.0LF ? t.normal : -t.normal;
+    const dvec3 high = round(normal / SPLIT);
+    const dvec3 low = normal - high * SPLIT;
+    const int side = 1 << t.shift;
+    for (int end = 0; end < 2; ++end) {
+        // Lower end: the voxels whose upper corner is not under the plane; upper end: whose lower corner is not above.
+        const bvec2 far_edge = end == 0 ? greaterThan(normal.yz, dvec2(0.0LF)) : lessThan(normal.yz, dvec2(0.0LF));
+        const dvec2 d = dvec2(row_low + side * ivec2(far_edge) - t.a.yz);
+        const double rest_high = high.y * d.x + high.z * d.y;
+        const double rest_low = low.y * d.x + low.z * d.y;
+        const double bound = (double(t.a.x) - (rest_high * SPLIT + rest_low) / normal.x) / double(side);
+        const int nearest = int(round(clamp(bound, double(t.low.x), double(t.high.x + 1))));
+        const double x = double((nearest << t.shift) - t.a.x);
+        // Compared, not added: the sum of these two would be rounded.
+        const double value_high = (high.x * x + rest_high) * SPLIT;
+        const double value_low = -(low.x * x + rest_low);
+        if (end == 0) span.x = max(span.x, value_high >= value_low ? nearest - 1 : nearest);
+        else span.y = min(span.y, value_high <= value_low ? nearest : nearest - 1);
+    }
+}
+
+ivec2 exact_row_span(ExactTriangle t, ivec2 row) {
+    const ivec2 row_low = row << t.shift;
+    ivec2 a = t.a.yz, b = t.b.yz, c = t.c.yz;
+    wind(a, b, c, t.normal.x);
+    const int side = 1 << t.shift;
+    if (!meets_side(a, b, row_low, side) || !meets_side(b, c, row_low, side) || !meets_side(c, a, row_low, side)) {
+        return ivec2(1, 0);
+    }
+    ivec2 span = ivec2(t.low.x, t.high.x);
+    a = t.a.xy, b = t.b.xy, c = t.c.xy;
+    wind(a, b, c, t.normal.z);
+    narrow_by_side(span, t, a, b, row_low.x);
+    narrow_by_side(span, t, b, c, row_low.x);
+    narrow_by_side(span, t, c, a, row_low.x);
+    a = t.a.xz, b = t.b.xz, c = t.c.xz;
+    wind(a, b, c, -t.normal.y);
+    narrow_by_side(span, t, a, b, row_low.y);
+    narrow_by_side(span, t, b, c, row_low.y);
+    narrow_by_side(span, t, c, a, row_low.y);
+    narrow_by_plane(span, t, row_low);
+    return span;
+}
+
+// ---- What callers use ----------------------------------------------------------------------------------------------
+
+ExactTriangle exact_triangle(ivec3 a, ivec3 b, ivec3 c, int shift) {
+    ExactTriangle t;
+    t.a = a;
+    t.b = b;
+    t.c = c;
+    t.shift = shift;
+    // A voxel that ends where the triangle begins is touched too.
+    t.low = (min(min(a, b), c) - 1) >> shift;
+    t.high = max(max(a, b), c) >> shift;
+    const dvec3 ab = dvec3(b - a), ac = dvec3(c - a);
+    t.normal = dvec3(ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x);
+    prepare_filter(t);
+    return t;
+}
+
+ivec2 row_span(ExactTriangle t, ivec2 row) {
+    bool in_doubt;
+    const ivec2 span = filtered_row_span(t, row, in_doubt);
+    if (!in_doubt) return span;
+    return exact_row_span(t, row);
+}

@@ -1,0 +1,15 @@
+// Triangles that wait for a later pass over the same batch: VOXEL_QUEUE_COUNT counters, then as many queues, each with
+// room for a whole batch, so that none can overflow.
+#include "interop/bindings.h"
+#include "interop/config.h"
+
+layout(std430, binding = SSBO_VOXEL_QUEUE) restrict buffer VoxelQueue { uint voxel_queue[]; };
+
+void enqueue(uint queue, uint triangle) {
+    const uint place = atomicAdd(voxel_queue[queue], 1u);
+    voxel_queue[VOXEL_QUEUE_COUNT + queue * VOXEL_BATCH_TRIANGLES + place] = triangle;
+}
+
+uint queued(uint queue, uint place) {
+    return voxel_queue[VOXEL_QUEUE_COUNT + queue * VOXEL_BATCH_TRIANGLES + place];
+}

@@ -1,0 +1,20 @@
+// The surface as voxelizer/surface.h uploads it (one chunk is bound at a time).
+#include "interop/bindings.h"
+#include "interop/config.h"
+#include "interop/types.h"
+
+layout(std430, binding = SSBO_SURFACE_POSITIONS) restrict readonly buffer SurfacePositions {
+    int surface_positions[];
+};
+layout(std430, binding = SSBO_SURFACE_TRIANGLES) restrict readonly buffer SurfaceTriangles {
+    SurfaceTriangle surface_triangles[];
+};
+layout(std430, binding = SSBO_SURFACE_MATERIALS) restrict readonly buffer SurfaceMaterials {
+    SurfaceMaterial surface_materials[];
+};
+
+// Lattice units.
+ivec3 surface_position(uint vertex) {
+    return ivec3(surface_positions[3u * vertex], surface_positions[3u * vertex + 1u],
+                 surface_positions[3u * vertex + 2u]);
+}

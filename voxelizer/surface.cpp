@@ -1,0 +1,239 @@
+#include "voxelizer/surface.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <new>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "base/error.h"
+#include "shaders/interop/config.h"
+#include "voxelizer/surface_materials.h"
+
+namespace cairn::voxelizer {
+namespace {
+
+constexpr std::int64_t lattice_side = std::int64_t(1) << LATTICE_BITS;
+
+/// One item on the lattice; triangles number its own vertices.
+struct Part {
+    SurfaceChunk mesh;
+    std::vector<FarTriangle> far_triangles;
+    bool has_color = false;
+    bool has_mask = false;
+};
+
+/// A coordinate on the grid of 1 / TEXCOORD_UNITS, where shaders can compute with it exactly.
+float rounded_texcoord(float coordinate) {
+    if (!std::isfinite(coordinate)) return 0.0F;
+    const double limited = std::clamp(double(coordinate), -TEXCOORD_LIMIT, TEXCOORD_LIMIT);
+    return float(std::round(limited * TEXCOORD_UNITS) / TEXCOORD_UNITS);
+}
+
+/// Octahedral map (Cigolle et al. 2014). Straight up would be 0, which means "none": it leans by the least step.
+std::uint32_t packed_normal(const glm::dvec3& normal) {
+    const double sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
+    if (!(sum > 0.0) || !std::isfinite(sum)) return 0;
+    glm::dvec2 e(normal.x / sum, normal.y / sum);
+    if (normal.z < 0.0) {
+        const glm::dvec2 folded = 1.0 - glm::dvec2(std::abs(e.y), std::abs(e.x));
+        e = {e.x >= 0.0 ? folded.x : -folded.x, e.y >= 0.0 ? folded.y : -folded.y};
+    }
+    const auto snorm = [](double value) { return std::uint32_t(std::uint16_t(std::int16_t(std::lround(value * 32767.0)))); };
+    const std::uint32_t packed = snorm(e.x) | snorm(e.y) << 16;
+    return packed != 0 ? packed : 1;
+}
+
+bool on_lattice_range(const glm::i64vec3& p) {
+    return glm::all(glm::greaterThanEqual(p, glm::i64vec3(-lattice_side))) &&
+           glm::all(glm::lessThanEqual(p, glm::i64vec3(2 * lattice_side)));
+}
+
+/// Puts one item on the lattice: only triangles that reach the root cube, only vertices that these use.
+class Flattener {
+public:
+    Flattener(const scenes::Scene& scene, const scenes::Item& item, const Grid& grid,
+              const SurfaceMaterials& materials, bool attributes)
+        : item_(item),
+          primitive_(*item.primitive),
+          grid_(grid),
+          materials_(materials),
+          attributes_(attributes),
+          numbers_(item.positions.size(), -1) {
+        if (primitive_.material >= 0) {
+            uv_from_mesh_ = scene.materials[std::size_t(primitive_.material)].uv_from_mesh;
+        }
+        const glm::dmat3 linear(item.world_from_mesh);
+        has_normals_ = !item.normals.empty() && glm::determinant(linear) != 0.0;
+        if (has_normals_) normal_from_mesh_ = glm::transpose(glm::inverse(linear));
+        lattice_.reserve(item.positions.size());
+        for (const glm::vec3& position : item.positions) {
+            lattice_.push_back(
+                grid.lattice_from_world(glm::dvec3(item.world_from_mesh * glm::dvec4(position, 1.0))));
+        }
+    }
+
+    Part run() {
+        const std::size_t corners = primitive_.topology == scenes::Topology::triangles ? 3
+                                    : primitive_.topology == scenes::Topology::lines   ? 2
+                                                                                       : 1;
+        part_.mesh.triangles.reserve(primitive_.element_count());
+        for (std::size_t first = 0; first + corners <= primitive_.indices.size(); first += corners) {
+            std::array<std::uint32_t, 3> vertices{};
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                vertices[corner] = primitive_.indices[first + std::min(corner, corners - 1)];
+            }
+            add(vertices);
+        }
+        for (const glm::u8vec4& color : primitive_.colors) {
+            part_.has_color = part_.has_color || color.r != 255 || color.g != 255 || color.b != 255;
+        }
+        return std::move(part_);
+    }
+
+private:
+    void add(const std::array<std::uint32_t, 3>& vertices) {
+        const glm::i64vec3& a = lattice_[vertices[0]];
+        const glm::i64vec3& b = lattice_[vertices[1]];
+        const glm::i64vec3& c = lattice_[vertices[2]];
+        if (glm::any(glm::lessThan(glm::max(glm::max(a, b), c), glm::i64vec3(0))) ||
+            glm::any(glm::greaterThan(glm::min(glm::min(a, b), c), glm::i64vec3(lattice_side)))) {
+            return;
+        }
+        Shown shown = Shown::whole;
+        if (materials_.is_masked(primitive_.material)) {
+            shown = materials_.shown(primitive_.material,
+                                     {texcoord(vertices[0]), texcoord(vertices[1]), texcoord(vertices[2])},
+                                     {color(vertices[0]), color(vertices[1]), color(vertices[2])});
+            if (shown == Shown::nothing) return;
+        }
+        part_.has_mask = part_.has_mask || shown == Shown::cut;
+        const std::uint32_t material = materials_.number(primitive_.material, shown);
+        if (on_lattice_range(a) && on_lattice_range(b) && on_lattice_range(c)) {
+            part_.mesh.triangles.push_back(
+                {{number(vertices[0]), number(vertices[1]), number(vertices[2]), material}});
+        } else {
+            part_.far_triangles.push_back({{a, b, c},
+                                           {texcoord(vertices[0]), texcoord(vertices[1]), texcoord(vertices[2])},
+                                           {color(vertices[0]), color(vertices[1]), color(vertices[2])},
+                                           material});
+        }
+    }
+
+    [[nodiscard]] glm::vec2 texcoord(std::uint32_t vertex) const {
+        if (primitive_.texcoords.empty()) return glm::vec2(0.0F);
+        const glm::vec3 uv = uv_from_mesh_ * glm::vec3(primitive_.texcoords[vertex], 1.0F);
+        return {rounded_texcoord(uv.x), rounded_texcoord(uv.y)};
+    }
+
+    [[nodiscard]] std::uint32_t color(std::uint32_t vertex) const {
+        if (primitive_.colors.empty()) return 0xFFFFFFFFU;
+        return std::bit_cast<std::uint32_t>(primitive_.colors[vertex]);
+    }
+
+    /// The number of a vertex in the part; it is added at its first use.
+    std::uint32_t number(std::uint32_t vertex) {
+        std::int32_t& number = numbers_[vertex];
+        if (number < 0) {
+            number = std::int32_t(part_.mesh.positions.size());
+            const glm::ivec3 position(lattice_[vertex]);
+            part_.mesh.positions.push_back({position.x, position.y, position.z});
+            if (attributes_) {
+                const std::uint32_t normal =
+                    has_normals_ ? packed_normal(normal_from_mesh_ * glm::dvec3(item_.normals[vertex])) : 0;
+                part_.mesh.attributes.push_back({normal, color(vertex), texcoord(vertex)});
+            }
+        }
+        return std::uint32_t(number);
+    }
+
+    const scenes::Item& item_;
+    const scenes::Primitive& primitive_;
+    const Grid& grid_;
+    const SurfaceMaterials& materials_;
+    bool attributes_;
+    bool has_normals_ = false;
+    glm::mat3 uv_from_mesh_{1.0F};
+    glm::dmat3 normal_from_mesh_{1.0};
+    std::vector<glm::i64vec3> lattice_;
+    std::vector<std::int32_t> numbers_;
+    Part part_;
+};
+
+/// Appends triangles to the last chunk, and starts new ones as they fill up. A chunk holds only vertices that its own
+/// triangles use, at most three each, so that its buffers stay small whatever the meshes share.
+void append(Surface& surface, const SurfaceChunk& part) {
+    std::vector<std::int32_t> numbers;
+    for (std::size_t first = 0; first < part.triangles.size();) {
+        if (surface.chunks.empty() || surface.chunks.back().triangles.size() == SURFACE_CHUNK_TRIANGLES) {
+            surface.chunks.emplace_back();
+        }
+        SurfaceChunk& chunk = surface.chunks.back();
+        const std::size_t room = SURFACE_CHUNK_TRIANGLES - chunk.triangles.size();
+        const std::size_t last = std::min(part.triangles.size(), first + room);
+        numbers.assign(part.positions.size(), -1);
+        for (; first < last; ++first) {
+            interop::SurfaceTriangle triangle = part.triangles[first];
+            for (int corner = 0; corner < 3; ++corner) {
+                std::uint32_t& vertex = triangle.vertices_material[corner];
+                std::int32_t& number = numbers[vertex];
+                if (number < 0) {
+                    number = std::int32_t(chunk.positions.size());
+                    chunk.positions.push_back(part.positions[vertex]);
+                    if (!part.attributes.empty()) chunk.attributes.push_back(part.attributes[vertex]);
+                }
+                vertex = std::uint32_t(number);
+            }
+            chunk.triangles.push_back(triangle);
+        }
+    }
+}
+
+void flatten(Surface& surface, const scenes::Scene& scene, const scenes::Snapshot& snapshot,
+             const SurfaceMaterials& materials, bool attributes) {
+    // Items side by side, a bounded number of triangles at a time: the parts exist beside the surface.
+    constexpr std::size_t group_triangles = std::size_t(1) << 19;
+    const std::vector<scenes::Item>& items = snapshot.items;
+    for (std::size_t first = 0; first < items.size();) {
+        std::size_t last = first;
+        for (std::size_t triangles = 0; last < items.size() && triangles < group_triangles; ++last) {
+            triangles += items[last].primitive->element_count();
+        }
+        std::vector<Part> parts(last - first);
+        tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
+            parts[i] = Flattener(scene, items[first + i], surface.grid, materials, attributes).run();
+        });
+        for (const Part& part : parts) {
+            append(surface, part.mesh);
+            surface.far_triangles.insert(surface.far_triangles.end(), part.far_triangles.begin(),
+                                         part.far_triangles.end());
+            surface.triangle_count += part.mesh.triangles.size() + part.far_triangles.size();
+            surface.has_color = surface.has_color || part.has_color;
+            surface.has_mask = surface.has_mask || part.has_mask;
+        }
+        first = last;
+    }
+}
+
+}  // namespace
+
+Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const Grid& grid,
+                      const SurfaceOptions& options) {
+    try {
+        SurfaceMaterials materials(scene, snapshot, options.attributes);
+        Surface surface;
+        surface.grid = grid;
+        surface.has_color = materials.has_color;
+        flatten(surface, scene, snapshot, materials, options.attributes || materials.any_masked);
+        surface.materials = std::move(materials.materials);
+        surface.texels = std::move(materials.texels);
+        return surface;
+    } catch (const std::bad_alloc&) {
+        throw Error(Fault::memory, scene.name, "its triangles do not fit in memory",
+                    "voxelize a part of it (--bounds)");
+    }
+}
+
+}  // namespace cairn::voxelizer

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "scenes/scene.h"
+#include "scenes/snapshot.h"
+#include "shaders/interop/types.h"
+
+namespace cairn::voxelizer {
+
+/// What an alpha mask leaves of a triangle.
+enum class Shown : std::uint8_t { whole, cut, nothing };
+
+/// The materials of a snapshot as the shaders read them, with the texels they use.
+///
+/// Material 0 is white and opaque; each material of the scene follows; then a twin without its mask for each masked
+/// one, which triangles take that are wholly shown.
+class SurfaceMaterials {
+public:
+    /// @param all_textures  upload every base-colour image in use, not only those of masks.
+    /// @throws Error  Fault::memory when the images hold more texels than 32 bits can number.
+    SurfaceMaterials(const scenes::Scene& scene, const scenes::Snapshot& snapshot, bool all_textures);
+
+    [[nodiscard]] bool is_masked(int scene_material) const;
+    [[nodiscard]] Shown shown(int scene_material, const std::array<glm::vec2, 3>& texcoords,
+                              const std::array<std::uint32_t, 3>& colors) const;
+    /// Number of the material in `materials`.
+    [[nodiscard]] std::uint32_t number(int scene_material, Shown shown) const;
+
+    std::vector<interop::SurfaceMaterial> materials;
+    std::vector<std::uint32_t> texels;
+    bool has_color = false;  ///< a factor or a texture that is not white
+    bool any_masked = false;
+
+private:
+    struct Mask {
+        std::uint32_t twin = 0;
+        std::uint32_t lowest_alpha = 255;
+        std::uint32_t highest_alpha = 255;
+    };
+
+    void add_material(const scenes::Scene& scene, const scenes::Material& material, bool textured);
+    [[nodiscard]] std::uint32_t place_image(const scenes::Image& image, int index);
+
+    std::vector<std::int64_t> image_offsets_;
+    std::vector<Mask> masks_;  ///< one a material of the scene
+};
+
+}  // namespace cairn::voxelizer
