@@ -1,5 +1,6 @@
 #include "scenes/snapshot.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -12,39 +13,53 @@
 namespace cairn::scenes {
 namespace {
 
-/// The vertices that a primitive uses, found once however often it is placed; empty = all of them.
-class UsedVertices {
-public:
-    const std::vector<std::uint32_t>& of(const Primitive& primitive) {
-        const auto [found, is_new] = lists_.try_emplace(&primitive);
-        if (is_new) found->second = find(primitive);
-        return found->second;
-    }
+/// More than this many placed primitives are a damaged file's doing: few bytes can ask for billions.
+constexpr std::size_t most_items = 4'000'000;
 
-private:
-    static std::vector<std::uint32_t> find(const Primitive& primitive) {
-        std::vector<bool> used(primitive.positions.size(), false);
-        for (const std::uint32_t index : primitive.indices)
-            used[index] = true;
-        std::vector<std::uint32_t> list;
-        for (std::uint32_t i = 0; i < used.size(); ++i)
-            if (used[i]) list.push_back(i);
-        if (list.size() == used.size()) list.clear();
-        return list;
-    }
-
-    std::unordered_map<const Primitive*, std::vector<std::uint32_t>> lists_;
+/// What is found once of a primitive, however often it is placed.
+struct Extent {
+    std::vector<std::uint32_t> used;  ///< the vertices that its indices name; empty = all
+    Bounds bounds;                    ///< of these, in mesh space; only for positions as the file has them
 };
+
+Extent extent_of(const Primitive& primitive) {
+    Extent extent;
+    std::vector<bool> used(primitive.positions.size(), false);
+    for (const std::uint32_t index : primitive.indices)
+        used[index] = true;
+    for (std::uint32_t i = 0; i < used.size(); ++i) {
+        if (!used[i]) continue;
+        extent.used.push_back(i);
+        extent.bounds.add(primitive.positions[i]);
+    }
+    if (extent.used.size() == used.size()) extent.used.clear();
+    return extent;
+}
+
+/// Whether the transformed box lies inside other bounds for certain, in spite of rounding. False when not
+/// finite.
+bool surely_inside(const Bounds& box, const glm::dmat4& matrix, const Bounds& outer) {
+    const glm::dvec3 centre(matrix * glm::dvec4(0.5 * (box.low + box.high), 1.0));
+    const glm::dmat3 size(glm::abs(glm::dvec3(matrix[0])), glm::abs(glm::dvec3(matrix[1])),
+                          glm::abs(glm::dvec3(matrix[2])));
+    const glm::dvec3 reach = size * (0.5 * (box.high - box.low));
+    // Sums of four products round by less than this part of their largest terms.
+    const glm::dvec3 largest = size * glm::max(glm::abs(box.low), glm::abs(box.high));
+    const glm::dvec3 slack = 1e-14 * (largest + glm::abs(glm::dvec3(matrix[3])));
+    const glm::dvec3 low = centre - reach - slack;
+    const glm::dvec3 high = centre + reach + slack;
+    return low.x >= outer.low.x && low.y >= outer.low.y && low.z >= outer.low.z && high.x <= outer.high.x &&
+           high.y <= outer.high.y && high.z <= outer.high.z;
+}
 
 class SnapshotTaker {
 public:
     SnapshotTaker(const Scene& scene, const Pose& pose) : scene_(scene), pose_(pose) {}
 
     Snapshot take(const SceneRoots& roots) {
-        std::vector<int> open(roots.nodes.rbegin(), roots.nodes.rend());
-        while (!open.empty()) {
-            const auto index = static_cast<std::size_t>(open.back());
-            open.pop_back();
+        const std::vector<std::size_t> nodes = nodes_in_order(roots);
+        result_.items.reserve(count_items(nodes));
+        for (const std::size_t index : nodes) {
             const Node& node = scene_.nodes[index];
             const glm::dmat4& world = pose_.world_from_node[index];
             if (node.mesh >= 0) place_mesh(index);
@@ -52,12 +67,39 @@ public:
                 result_.lights.push_back({scene_.lights[static_cast<std::size_t>(node.light)], world});
             if (node.camera >= 0)
                 result_.cameras.push_back({scene_.cameras[static_cast<std::size_t>(node.camera)], world});
-            open.insert(open.end(), node.children.rbegin(), node.children.rend());
         }
         return std::move(result_);
     }
 
 private:
+    /// Depth first, each node before its children.
+    [[nodiscard]] std::vector<std::size_t> nodes_in_order(const SceneRoots& roots) const {
+        std::vector<std::size_t> order;
+        std::vector<int> open(roots.nodes.rbegin(), roots.nodes.rend());
+        while (!open.empty()) {
+            order.push_back(static_cast<std::size_t>(open.back()));
+            open.pop_back();
+            const auto& children = scene_.nodes[order.back()].children;
+            open.insert(open.end(), children.rbegin(), children.rend());
+        }
+        return order;
+    }
+
+    /// At most how many items these nodes give.
+    [[nodiscard]] std::size_t count_items(const std::vector<std::size_t>& nodes) const {
+        std::size_t count = 0;
+        for (const std::size_t index : nodes) {
+            const Node& node = scene_.nodes[index];
+            if (node.mesh < 0) continue;
+            count += scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives.size() *
+                     std::max<std::size_t>(node.instances.size(), 1);
+            if (count > most_items)
+                throw Error(Fault::input, scene_.name,
+                            fmt::format("it places more than {} primitives", most_items), "split the scene");
+        }
+        return count;
+    }
+
     void place_mesh(std::size_t index) {
         const Node& node = scene_.nodes[index];
         const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(node.mesh)];
@@ -124,14 +166,22 @@ private:
         }
         result_.items.push_back(item);
         if (count == 0) return;
-        const auto& used = used_.of(*item.primitive);
+        const auto [found, is_new] = extents_.try_emplace(item.primitive);
+        if (is_new) found->second = extent_of(*item.primitive);
+        const Extent& extent = found->second;
+        const bool deformed = item.positions.data() != item.primitive->positions.data();
+        if (deformed || !surely_inside(extent.bounds, item.world_from_mesh, result_.bounds))
+            add_vertices(item, extent.used, node);
+    }
+
+    /// Grows the bounds vertex by vertex.
+    void add_vertices(const Item& item, const std::vector<std::uint32_t>& used, std::size_t node) {
         const std::size_t vertex_count = used.empty() ? item.positions.size() : used.size();
-        Bounds bounds;
         double finite_sum = 0.0;  // a single infinity or NaN stays in a sum for ever
         for (std::size_t i = 0; i < vertex_count; ++i) {
             const glm::vec3& position = item.positions[used.empty() ? i : used[i]];
             const glm::dvec3 world(item.world_from_mesh * glm::dvec4(position, 1.0));
-            bounds.add(world);
+            result_.bounds.add(world);
             finite_sum += 0.0 * (world.x + world.y + world.z);
         }
         if (!std::isfinite(finite_sum))
@@ -139,15 +189,11 @@ private:
                         fmt::format("{}: node {} \"{}\"", scene_.name, node, scene_.nodes[node].name),
                         "its transform, skin or morph targets move a vertex to infinity",
                         "the file is damaged; export it again");
-        if (!bounds.empty()) {
-            result_.bounds.add(bounds.low);
-            result_.bounds.add(bounds.high);
-        }
     }
 
     const Scene& scene_;
     const Pose& pose_;
-    UsedVertices used_;
+    std::unordered_map<const Primitive*, Extent> extents_;
     Snapshot result_;
 };
 

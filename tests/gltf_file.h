@@ -86,7 +86,7 @@ struct GltfFile {
 
     [[nodiscard]] Json with_buffer(const std::string& uri) const {
         Json result = json;
-        if (binary.empty() || result.contains("buffers")) return result;
+        if (binary.empty() || !json.is_object() || json.contains("buffers")) return result;
         Json buffer = {{"byteLength", binary.size()}};
         if (!uri.empty()) buffer["uri"] = uri;
         result["buffers"] = Json::array({buffer});

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "scenes/gltf/failure.h"
-#include "scenes/gltf/limits.h"
 
 namespace {
 
@@ -45,7 +44,7 @@ constexpr const char* way_out = "only PNG and JPEG are read; convert the image";
 
 }  // namespace
 
-Image decode_image(const std::string& where, std::span<const std::uint8_t> file, std::uint64_t left_bytes) {
+Image decode_image(const std::string& where, std::span<const std::uint8_t> file, Budget& budget) {
     if (file.size() > std::numeric_limits<int>::max())
         fail(where, "the image file passes 2 GiB", "make it smaller");
     const auto file_bytes = static_cast<int>(file.size());
@@ -56,8 +55,9 @@ Image decode_image(const std::string& where, std::span<const std::uint8_t> file,
     if (stbi_info_from_memory(file.data(), file_bytes, &width, &height, &channels) == 0)
         fail(where, fmt::format("the image cannot be read ({})", stbi_failure_reason()), way_out);
     const std::uint64_t bytes = 4ULL * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    if (width > widest_image || height > widest_image || bytes > most_image_bytes || bytes > left_bytes)
+    if (width > widest_image || height > widest_image || bytes > most_image_bytes)
         fail(where, fmt::format("the image of {} x {} texels is too large", width, height), "scale it down");
+    budget.charge(where, bytes, 1);
 
     // 16 bits a channel and one filter byte a row; zlib's buffer grows by doubling.
     largest_block = 2 * (2 * bytes + static_cast<std::size_t>(height)) + (1U << 20U);

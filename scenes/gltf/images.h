@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "scenes/gltf/limits.h"
 #include "scenes/scene.h"
 
 namespace cairn::scenes::gltf {
@@ -12,9 +13,8 @@ namespace cairn::scenes::gltf {
 ///
 /// The size that the file claims is checked before anything is allocated, and a stream that unpacks to more
 /// than that size needs is refused.
-/// @param left_bytes  what all images together may still take.
-/// @throws Error      the image is damaged, of another format, or too large.
+/// @throws Error  the image is damaged, of another format, or too large.
 [[nodiscard]] Image decode_image(const std::string& where, std::span<const std::uint8_t> file,
-                                 std::uint64_t left_bytes);
+                                 Budget& budget);
 
 }  // namespace cairn::scenes::gltf

@@ -158,14 +158,13 @@ private:
             reader_.source.where(element("image", static_cast<std::size_t>(index), name));
         Image image = decode(where, source);
         image.name = name;
-        image_bytes_left_ -= image.rgba.size();
         reader_.scene.images.push_back(std::move(image));
         return found->second;
     }
 
     Image decode(const std::string& where, const ImageSource& source) {
         if (source.buffer_view >= 0)
-            return decode_image(where, reader_.buffers.view(source.buffer_view), image_bytes_left_);
+            return decode_image(where, reader_.buffers.view(source.buffer_view), reader_.budget);
         if (!source.uri) fail(where, "it has neither a URI nor a buffer view");
         const auto file = is_data_uri(*source.uri)
                               ? decode_data_uri(where, *source.uri)
@@ -173,14 +172,14 @@ private:
                                           resolve_uri(where, *source.uri, reader_.source.folder,
                                                       reader_.source.trust_paths),
                                           most_file_bytes);
-        return decode_image(where, file, image_bytes_left_);
+        reader_.budget.grant(file.size());
+        return decode_image(where, file, reader_.budget);
     }
 
     Reader& reader_;
     std::string where_;
     std::map<int, int> images_;
     std::map<std::tuple<int, Wrap, Wrap>, int> textures_;
-    std::uint64_t image_bytes_left_ = most_image_sum_bytes;
 };
 
 }  // namespace

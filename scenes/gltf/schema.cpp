@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -54,7 +55,7 @@ public:
 
     void object(json& value, const Shape& shape, const Frame& frame) {
         if (!value.is_object()) refuse(frame, fmt::format("should be an object, is {}", shown(value)));
-        value.erase("extras");
+        prune(value, shape);
         for (const Property& property : shape.properties) {
             const auto found = value.find(property.name);
             if (found != value.end())
@@ -65,6 +66,14 @@ public:
     }
 
 private:
+    /// What the tables do not name goes, so that tinygltf sees only what has been checked.
+    static void prune(json& value, const Shape& shape) {
+        for (auto entry = value.begin(); entry != value.end();) {
+            const auto is_entry = [&](const Property& property) { return entry.key() == property.name; };
+            entry = std::ranges::any_of(shape.properties, is_entry) ? std::next(entry) : value.erase(entry);
+        }
+    }
+
     [[noreturn]] void refuse(const Frame& frame, const std::string& what) const {
         const std::string where = described(&frame);
         fail(where.empty() ? name_ : name_ + ": " + where, what);
@@ -125,9 +134,10 @@ private:
     template <typename Each>
     void each_of(json& value, const Property& property, const Frame& frame, Each each) const {
         if (!value.is_array()) wrong_type(frame, property, "an array", value);
-        if (value.size() > most_elements)
+        const std::size_t most = property.length != 0 ? property.length : most_elements;
+        if (value.size() > most)
             refuse(frame, fmt::format("\"{}\" holds {} elements, the limit is {}", property.name,
-                                      value.size(), most_elements));
+                                      value.size(), most));
         std::size_t i = 0;
         for (json& entry : value) {
             const Frame inner{&frame, property.label, &i, &entry};
@@ -176,6 +186,9 @@ private:
                 each_of(value, property, frame, [&](json& entry, const Frame&) {
                     if (!entry.is_string()) wrong_type(frame, property, "an array of strings", entry);
                 });
+                break;
+            case Kind::any_object:
+                if (!value.is_object()) wrong_type(frame, property, "an object", value);
                 break;
             case Kind::object:
                 object(value, *property.inside, {&frame, property.name, nullptr, nullptr});

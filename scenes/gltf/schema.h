@@ -11,7 +11,8 @@ namespace cairn::scenes::gltf {
 /// index needs a check against its array again (an animation channel's sampler excepted, which is local to
 /// its animation).
 ///
-/// What tinygltf would take amiss is made regular: whole numbers written as 3.0 become integers; "extras" go.
+/// What tinygltf might take amiss is made regular: whole numbers written as 3.0 become integers, and every
+/// property that the loader does not read goes ("extras", unknown extensions, min and max, ...).
 /// @throws Error  naming the element, its property and what is wrong with it.
 void check_schema(const std::string& name, nlohmann::json& document);
 

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "scenes/gltf/limits.h"
+
 namespace cairn::scenes::gltf {
 namespace {
 
@@ -19,8 +21,9 @@ constexpr Property index(const char* name, const char* target, bool must = false
 constexpr Property object(const char* name, const Shape& inside, bool must = false) {
     return {name, Kind::object, must, nullptr, 0, &inside};
 }
-constexpr Property objects(const char* name, const char* label, const Shape& inside, bool must = false) {
-    return {name, Kind::objects, must, nullptr, 0, &inside, label};
+constexpr Property objects(const char* name, const char* label, const Shape& inside, bool must = false,
+                           std::size_t most = 0) {
+    return {name, Kind::objects, must, nullptr, most, &inside, label};
 }
 
 constexpr const char* lights_array = "/extensions/KHR_lights_punctual/lights";
@@ -73,9 +76,8 @@ constexpr Shape accessor{accessor_rows};
 // --- meshes
 
 // The ids in "attributes" are Draco's own; draco.cpp checks them.
-constexpr Shape anything{};
 constexpr std::array draco_rows{index("bufferView", "/bufferViews", required),
-                                object("attributes", anything, required)};
+                                value("attributes", Kind::any_object, required)};
 constexpr Shape draco{draco_rows};
 constexpr std::array primitive_extension_rows{object("KHR_draco_mesh_compression", draco)};
 constexpr Shape primitive_extensions{primitive_extension_rows};
@@ -195,7 +197,7 @@ constexpr std::array document_rows{object("asset", asset, required),
                                    objects("bufferViews", "buffer view", view),
                                    objects("accessors", "accessor", accessor),
                                    objects("meshes", "mesh", mesh),
-                                   objects("materials", "material", material),
+                                   objects("materials", "material", material, !required, most_materials),
                                    objects("textures", "texture", texture),
                                    objects("images", "image", image),
                                    objects("samplers", "texture sampler", sampler),

@@ -17,6 +17,7 @@ enum class Kind {
     indices,
     index_map,   ///< an object of indices: the attributes of a primitive
     index_maps,  ///< its morph targets
+    any_object,  ///< kept as it is
     object,
     objects,
 };
@@ -28,8 +29,8 @@ struct Property {
     const char* name;
     Kind kind;
     bool required = false;
-    const char* target = nullptr;   ///< index kinds: JSON pointer to the array that they point into
-    std::size_t length = 0;         ///< numbers: how many; 0 = any
+    const char* target = nullptr;  ///< index kinds: JSON pointer to the array that they point into
+    std::size_t length = 0;  ///< numbers: how many, 0 = any; objects: at most how many, 0 = most_elements
     const Shape* inside = nullptr;  ///< object, objects
     const char* label = "";         ///< objects: what messages call one of them
 };
