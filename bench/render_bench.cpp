@@ -1,9 +1,10 @@
-// A converged frame with hard shadows beside Embree's single rays: same triangles, camera, light and cores, in one run.
+// A converged frame with hard shadows beside Embree's single rays: same triangles, camera, light and cores,
+// in one run.
 //
 //     render_bench OUT_FOLDER [SCENE ...]
 //
-// Prints a table and writes OUT_FOLDER/render.csv. The two are measured in turn, so that the ratio holds when the
-// machine's speed drifts.
+// Prints a table and writes OUT_FOLDER/render.csv. The two are measured in turn, so that the ratio holds when
+// the machine's speed drifts.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -36,7 +37,8 @@ std::string measure(const std::string& name, int size) {
     renderer::View view;
     view.width = view.height = size;
     view.camera = renderer::framing_camera(snapshot.bounds, 1.0);
-    const reference::ReferenceCamera camera{view.camera.eye, view.camera.target, view.camera.up, view.camera.yfov};
+    const reference::ReferenceCamera camera{view.camera.eye, view.camera.target, view.camera.up,
+                                            view.camera.yfov};
     reference::ReferenceLight light;
     light.towards = view.light.towards;
     reference::ImageTracer embree(scene, snapshot);
@@ -53,10 +55,13 @@ std::string measure(const std::string& name, int size) {
         embree_ms.push_back(embree.trace(camera, light, size, size).milliseconds);
         ratio.push_back(ours_ms.back() / embree_ms.back());
     }
-    fmt::print("{:<40} {:>5}  first {:>8.1f} ms ({} bricks)  converged {:>7.1f} ms  Embree {:>7.1f} ms  ratio {:.2f}\n", name,
-               size, first_ms, bricks, median(ours_ms), median(embree_ms), median(ratio));
-    return fmt::format("{},{},{:.2f},{},{:.2f},{:.2f},{:.3f},\"{}\",{}\n", name, size, first_ms, bricks, median(ours_ms),
-                       median(embree_ms), median(ratio), gl::driver_name(), std::thread::hardware_concurrency());
+    fmt::print(
+        "{:<40} {:>5}  first {:>8.1f} ms ({} bricks)  converged {:>7.1f} ms  Embree {:>7.1f} ms  ratio "
+        "{:.2f}\n",
+        name, size, first_ms, bricks, median(ours_ms), median(embree_ms), median(ratio));
+    return fmt::format("{},{},{:.2f},{},{:.2f},{:.2f},{:.3f},\"{}\",{}\n", name, size, first_ms, bricks,
+                       median(ours_ms), median(embree_ms), median(ratio), gl::driver_name(),
+                       std::thread::hardware_concurrency());
 }
 
 }  // namespace
@@ -70,7 +75,8 @@ int main(int argc, char** argv) try {
     if (scenes.empty()) scenes = {"builtin:knot", "builtin:spheres", "builtin:tree"};
     const auto context = gl::create_context();
     std::string csv = "scene,size,first_ms,bricks,converged_ms,embree_ms,ratio,driver,threads\n";
-    for (const std::string& scene : scenes) csv += measure(scene, 512);
+    for (const std::string& scene : scenes)
+        csv += measure(scene, 512);
     std::filesystem::create_directories(argv[1]);
     OutputFile file(std::filesystem::path(argv[1]) / "render.csv");
     file.write(csv.data(), csv.size());

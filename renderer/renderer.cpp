@@ -56,7 +56,7 @@ void check(const View& view) {
 }
 
 /// The view in voxels of the finest level, from the root cube's low corner.
-interop::MarchView march_view(const View& view, const voxelizer::Grid& grid) {
+interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, int n) {
     auto place = [&](const glm::dvec3& world) { return glm::vec3((world - grid.origin) / grid.voxel_size); };
     const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
@@ -64,8 +64,12 @@ interop::MarchView march_view(const View& view, const voxelizer::Grid& grid) {
     const double half_height = std::tan(0.5 * view.camera.yfov);
     const double half_width = half_height * view.width / view.height;
 
+    // Levels are n apart: the nearest one, as in mip mapping, has voxels between 1 / sqrt(n) and sqrt(n)
+    // pixels.
+    const double cone = 2.0 * half_height / view.height * view.pixel_error * std::sqrt(double(n));
+
     interop::MarchView out{};
-    out.eye = glm::vec4(place(view.camera.eye), float(2.0 * half_height / view.height * view.pixel_error));
+    out.eye = glm::vec4(place(view.camera.eye), float(cone));
     out.forward = glm::vec4(glm::vec3(forward), 0.0F);
     out.right = glm::vec4(glm::vec3(right * half_width), 0.0F);
     out.up = glm::vec4(glm::vec3(up * half_height), 0.0F);
@@ -169,7 +173,7 @@ Image Renderer::render(const View& view, const std::function<void(double)>& prog
     parts.statistics = FrameStatistics{};
     FrameStatistics& statistics = parts.statistics;
 
-    parts.marcher.begin_frame(march_view(view, parts.grid), parts.tree, parts.pool);
+    parts.marcher.begin_frame(march_view(view, parts.grid, parts.shape.n), parts.tree, parts.pool);
     const double pixels = double(view.width) * view.height;
     for (;;) {
         const auto pass_start = Clock::now();

@@ -44,8 +44,8 @@ struct View {
     Light light;
     Shadow shadow = Shadow::hard;
     glm::vec3 background{0.80F, 0.84F, 0.90F};  ///< linear
-    /// A ray stops descending where a voxel is narrower than this many pixels (Crassin et al. 2008,
-    /// section 4.3).
+    /// Size of a voxel on the screen, in pixels: a ray takes the tree level whose voxels are nearest to it,
+    /// by ratio, as in mip mapping (Crassin et al. 2008, section 4.3).
     double pixel_error = 1.0;
 };
 

@@ -81,8 +81,8 @@ struct Hit {
     double depth = 0.0;
 };
 
-/// Calls visit(voxel, t_in, t_out) for each voxel that the ray crosses, nearest first, until it returns false.
-/// Positions in voxels.
+/// Calls visit(voxel, t_in, t_out) for each voxel that the ray crosses, nearest first, until it returns
+/// false. Positions in voxels.
 void cross_voxels(int side, const dvec3& origin, const dvec3& direction, double t_end,
                   const std::function<bool(const ivec3&, double, double)>& visit) {
     double t_near = 0.0;
@@ -118,8 +118,8 @@ void cross_voxels(int side, const dvec3& origin, const dvec3& direction, double 
     }
 }
 
-double opacity(double coverage, double chord) {
-    return 1.0 - std::pow(1.0 - coverage * (1.0 - FULL_COVERAGE_TRANSMITTANCE), chord);
+double behind(double transmittance, double coverage) {
+    return std::max(transmittance - std::min(2.0 * coverage, 1.0), 0.0);
 }
 
 /// Trilinear fetch between voxel centres; outside the root cube there is nothing.
@@ -132,8 +132,8 @@ dvec3 filtered_normal(const DenseVoxels& voxels, const dvec3& point) {
         const ivec3 d(corner & 1, corner >> 1 & 1, corner >> 2);
         const ivec3 v = low + d;
         const dvec3 w = glm::mix(1.0 - f, f, dvec3(d));
-        const bool inside = glm::all(glm::greaterThanEqual(v, ivec3(0))) &&
-                            glm::all(glm::lessThan(v, ivec3(voxels.side)));
+        const bool inside =
+            glm::all(glm::greaterThanEqual(v, ivec3(0))) && glm::all(glm::lessThan(v, ivec3(voxels.side)));
         sum += w.x * w.y * w.z * (inside ? voxels.normal[voxels.index(v)] : rounded_normal(dvec3(0.0)));
     }
     return sum;
@@ -144,7 +144,8 @@ Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direct
     cross_voxels(voxels.side, eye, direction, 1e30, [&](const ivec3& v, double t_in, double t_out) {
         const double coverage = voxels.coverage[voxels.index(v)];
         if (coverage == 0.0) return true;
-        const double weight = hit.transmittance * opacity(coverage, t_out - t_in);
+        const double left = behind(hit.transmittance, coverage);
+        const double weight = hit.transmittance - left;
         const double middle = 0.5 * (t_in + t_out);
         const dvec3 normal = filtered_normal(voxels, eye + direction * middle);
         hit.normal += weight * normal / std::max(glm::length(normal), 1e-3);
@@ -152,21 +153,23 @@ Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direct
             hit.best_weight = weight;
             hit.depth = middle;
         }
-        hit.transmittance -= weight;
+        hit.transmittance = left;
         return hit.transmittance > OPAQUE_TRANSMITTANCE;
     });
     if (hit.transmittance <= OPAQUE_TRANSMITTANCE) hit.transmittance = 0.0;
     return hit;
 }
 
-double shadow_ray(const DenseVoxels& voxels, const dvec3& start, const dvec3& direction, double reach) {
+double shadow_ray(const DenseVoxels& voxels, const dvec3& receiver, const dvec3& normal,
+                  const dvec3& direction, double reach) {
     double visibility = 1.0;
-    bool leaving = true;
-    cross_voxels(voxels.side, start, direction, reach, [&](const ivec3& v, double t_in, double t_out) {
+    const double own_reach = std::clamp(2.5 / std::max(glm::dot(normal, direction), 1e-3), 8.0, 64.0);
+    cross_voxels(voxels.side, receiver, direction, reach, [&](const ivec3& v, double t_in, double t_out) {
         const double coverage = voxels.coverage[voxels.index(v)];
-        leaving = leaving && coverage > 0.0 && t_in < 2.0;
-        if (coverage == 0.0 || leaving) return true;
-        visibility *= 1.0 - opacity(coverage, t_out - t_in);
+        const bool own =
+            0.5 * (t_in + t_out) < own_reach && glm::dot(dvec3(v) + 0.5 - receiver, normal) < 1.75;
+        if (coverage == 0.0 || own) return true;
+        visibility = behind(visibility, coverage);
         return visibility > OPAQUE_TRANSMITTANCE;
     });
     return visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
@@ -233,18 +236,17 @@ renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& vie
                 const double facing = std::max(glm::dot(normal, to_light(point)), 0.0);
                 double visibility = 1.0;
                 if (view.shadow == renderer::Shadow::hard && facing > 0.0 && alpha >= 1.0 / 512.0) {
-                    const dvec3 start = point + normal;
-                    const double reach = view.light.positional
-                                             ? glm::length(place(view.light.position) - start)
-                                             : 1e30;
-                    visibility = shadow_ray(voxels, start, to_light(start), reach);
+                    const double reach =
+                        view.light.positional ? glm::length(place(view.light.position) - point) : 1e30;
+                    visibility = shadow_ray(voxels, point, normal, to_light(point), reach);
                 }
                 const double ambient = view.light.ambient;
                 const dvec3 light = dvec3(view.light.color) * (ambient * (0.75 + 0.25 * normal.y) +
                                                                (1.0 - ambient) * facing * visibility);
                 color = alpha * light + hit.transmittance * dvec3(view.background);
             }
-            for (int k = 0; k < 3; ++k) image.rgba.push_back(std::uint8_t(std::lround(255.0 * srgb(color[k]))));
+            for (int k = 0; k < 3; ++k)
+                image.rgba.push_back(std::uint8_t(std::lround(255.0 * srgb(color[k]))));
             image.rgba.push_back(std::uint8_t(std::lround(255.0 * std::clamp(alpha, 0.0, 1.0))));
         }
     }

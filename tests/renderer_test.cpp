@@ -1,12 +1,12 @@
-#include <gtest/gtest.h>
+#include "renderer/renderer.h"
 
 #include <cmath>
 #include <random>
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "renderer/renderer.h"
 #include "scenes/builtin.h"
 #include "scenes/snapshot.h"
 #include "tests/gl_fixture.h"
@@ -38,10 +38,11 @@ Difference compare(const Image& a, const Image& b, int threshold) {
         difference.largest = std::max(difference.largest, most);
         if (most <= threshold) continue;
         if (difference.pixels_over++ == 0) {
-            difference.first = fmt::format("pixel ({}, {}): {} {} {} {} against {} {} {} {}", pixel % std::size_t(a.width),
-                                           pixel / std::size_t(a.width), a.rgba[pixel * 4], a.rgba[pixel * 4 + 1],
-                                           a.rgba[pixel * 4 + 2], a.rgba[pixel * 4 + 3], b.rgba[pixel * 4],
-                                           b.rgba[pixel * 4 + 1], b.rgba[pixel * 4 + 2], b.rgba[pixel * 4 + 3]);
+            difference.first =
+                fmt::format("pixel ({}, {}): {} {} {} {} against {} {} {} {}", pixel % std::size_t(a.width),
+                            pixel / std::size_t(a.width), a.rgba[pixel * 4], a.rgba[pixel * 4 + 1],
+                            a.rgba[pixel * 4 + 2], a.rgba[pixel * 4 + 3], b.rgba[pixel * 4],
+                            b.rgba[pixel * 4 + 1], b.rgba[pixel * 4 + 2], b.rgba[pixel * 4 + 3]);
         }
     }
     return difference;
@@ -68,15 +69,17 @@ class TreeShapes : public GlTest, public ::testing::WithParamInterface<std::pair
 TEST_P(TreeShapes, PictureEqualsThePlainCpuMarchOfTheSameBits) {
     const scenes::Scene scene = ball_over_floor();
     const DenseVoxels voxels = dense_voxels(scene, 64);
-    Renderer renderer = make_renderer(scene, {.n = GetParam().first, .m = GetParam().second, .max_resolution = 64});
+    Renderer renderer =
+        make_renderer(scene, {.n = GetParam().first, .m = GetParam().second, .max_resolution = 64});
     View view = finest_view(scene);
-    for (const glm::dvec3 direction : {glm::dvec3(0.55, 0.45, 1.0), glm::dvec3(-1.0, 0.2, 0.1), glm::dvec3(0.1, 1.0, -0.3)}) {
+    for (const glm::dvec3 direction :
+         {glm::dvec3(0.55, 0.45, 1.0), glm::dvec3(-1.0, 0.2, 0.1), glm::dvec3(0.1, 1.0, -0.3)}) {
         const double distance = glm::length(view.camera.eye - view.camera.target);
         view.camera.eye = view.camera.target + glm::normalize(direction) * distance;
         const Image ours = renderer.render(view);
         const Image twin = march_dense(voxels, view);
-        // Float against double: a chord's end moves by 1e-5 voxels, which shows where a threshold is crossed (the voxel
-        // that weighs most, the first empty cell of a shadow ray), on few pixels.
+        // Float against double: a chord's end moves by 1e-5 voxels, which shows where a threshold is crossed
+        // (the voxel that weighs most, the first empty cell of a shadow ray), on few pixels.
         const Difference difference = compare(ours, twin, 2);
         EXPECT_LE(difference.pixels_over, ours.rgba.size() / 4 / 200) << difference.first;
     }
@@ -87,7 +90,8 @@ TEST_P(TreeShapes, PictureFromManyBricksEqualsTheOneFromADenseGrid) {
     const View view = finest_view(scene);
     const Image dense = make_renderer(scene, {.m = 64, .max_resolution = 64}).render(view);
     const Image bricks =
-        make_renderer(scene, {.n = GetParam().first, .m = GetParam().second, .max_resolution = 64}).render(view);
+        make_renderer(scene, {.n = GetParam().first, .m = GetParam().second, .max_resolution = 64})
+            .render(view);
     const Difference difference = compare(dense, bricks, 1);
     EXPECT_EQ(difference.pixels_over, 0U) << difference.first;
 }
@@ -113,8 +117,8 @@ TEST_P(TreeShapes, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
 }
 
 INSTANTIATE_TEST_SUITE_P(NAndM, TreeShapes,
-                         ::testing::Values(std::pair(4, 16), std::pair(2, 8), std::pair(2, 16), std::pair(4, 8),
-                                           std::pair(2, 32)),
+                         ::testing::Values(std::pair(4, 16), std::pair(2, 8), std::pair(2, 16),
+                                           std::pair(4, 8), std::pair(2, 32)),
                          [](const auto& info) {
                              return fmt::format("N{}M{}", info.param.first, info.param.second);
                          });
@@ -179,8 +183,8 @@ TEST_F(RendererTest, EmptySceneIsBackgroundAndProducesNothing) {
 }
 
 TEST_F(RendererTest, ShadowOfASquareLiesWhereGeometryPutsIt) {
-    // A unit square one above a floor, light straight down, camera straight above but looking past the square's edge:
-    // the floor is dark exactly under the square.
+    // A unit square one above a floor, light straight down, camera straight above but looking past the
+    // square's edge: the floor is dark exactly under the square.
     const scenes::Scene scene = square_over_floor();
     View view;
     view.width = view.height = 200;
@@ -204,7 +208,8 @@ TEST_F(RendererTest, ShadowOfASquareLiesWhereGeometryPutsIt) {
             const glm::dvec3 floor_point = view.camera.eye - ray * (view.camera.eye.y / ray.y);
             const glm::dvec3 square_point = view.camera.eye + ray * ((1.0 - view.camera.eye.y) / ray.y);
             const bool on_floor = std::abs(floor_point.x) < 1.9 && std::abs(floor_point.z) < 1.9;
-            const bool behind_square = std::abs(square_point.x) < 0.6 && std::abs(square_point.z) < 0.6 && ray.y > 0.0;
+            const bool behind_square =
+                std::abs(square_point.x) < 0.6 && std::abs(square_point.z) < 0.6 && ray.y > 0.0;
             if (!on_floor || behind_square) continue;
             const double edge = std::max(std::abs(floor_point.x), std::abs(floor_point.z)) - 0.5;
             if (std::abs(edge) < 0.05) continue;  // a few pixels around the shadow's edge
@@ -238,7 +243,8 @@ TEST_F(RendererTest, FlatColoursComeThroughUnchanged) {
         const double c = linear[channel];
         const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
         // 8 bits of a square root are at most 1.5 steps of sRGB in the dark.
-        EXPECT_NEAR(image.rgba[std::size_t(20 * 40 + 20) * 4 + std::size_t(channel)], 255.0 * srgb, 2.0) << "channel " << channel;
+        EXPECT_NEAR(image.rgba[std::size_t(20 * 40 + 20) * 4 + std::size_t(channel)], 255.0 * srgb, 2.0)
+            << "channel " << channel;
     }
     EXPECT_EQ(image.rgba[std::size_t(20 * 40 + 20) * 4 + 3], 255);
 }
@@ -248,23 +254,30 @@ TEST_F(RendererTest, CamerasInsideOnFacesAndAlongAxesComeToAnEnd) {
     const scenes::Bounds bounds = scenes::take_snapshot(scene).bounds;
     const glm::dvec3 centre = 0.5 * (bounds.low + bounds.high);
     Renderer renderer = make_renderer(scene, {.max_resolution = 256});
-    std::vector<glm::dvec3> eyes = {centre, bounds.low, bounds.high, {centre.x, bounds.low.y, centre.z},
-                                    {centre.x + 1e6, centre.y, centre.z}, {centre.x, centre.y + 10.0, centre.z}};
+    std::vector<glm::dvec3> eyes = {centre,
+                                    bounds.low,
+                                    bounds.high,
+                                    {centre.x, bounds.low.y, centre.z},
+                                    {centre.x + 1e6, centre.y, centre.z},
+                                    {centre.x, centre.y + 10.0, centre.z}};
     std::mt19937 random(7);
     for (int i = 0; i < 10; ++i) {
         auto unit = [&] { return double(random() >> 8U) * 0x1p-24; };
         eyes.push_back(bounds.low + (bounds.high - bounds.low) * glm::dvec3(unit(), unit(), unit()));
     }
     for (const glm::dvec3& eye : eyes) {
-        for (const glm::dvec3 towards : {glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1), glm::dvec3(-1, -1, -1)}) {
+        for (const glm::dvec3 towards :
+             {glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1), glm::dvec3(-1, -1, -1)}) {
             View view;
             view.width = 31;  // odd: the middle pixel looks exactly along the axis
             view.height = 21;
             view.camera.eye = eye;
             view.camera.target = eye + towards;
-            view.camera.up = std::abs(towards.y) == 1.0 && towards.x == 0.0 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+            view.camera.up =
+                std::abs(towards.y) == 1.0 && towards.x == 0.0 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
             view.light.towards = {0.0, 1.0, 0.0};
-            ASSERT_NO_THROW((void)renderer.render(view)) << "seed 7, eye " << eye.x << ' ' << eye.y << ' ' << eye.z;
+            ASSERT_NO_THROW((void)renderer.render(view))
+                << "seed 7, eye " << eye.x << ' ' << eye.y << ' ' << eye.z;
         }
     }
 }

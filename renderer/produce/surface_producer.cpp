@@ -16,7 +16,7 @@ constexpr unsigned group_size = 64;
 
 std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
     const auto side = std::size_t(shape.m) + 2;
-    return side * side * side * (has_color ? 9 : 6) * sizeof(std::uint32_t);  // SCRATCH_WORDS
+    return side * side * side * (has_color ? 9 : 6) * sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
 }
 
 }  // namespace
@@ -35,6 +35,10 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
 
     scratch_ = gl::Buffer(std::size_t(batch_) * brick_bytes, "brick scratch");
     scratch_.fill(0);
+    // Masks of all voxels of a batch stand before their sums (scratch.glsl).
+    const std::size_t side = std::size_t(shape.m) + 2;
+    for (gl::Program* program : {&splat_, &resolve_})
+        program->set("sums_offset", unsigned(std::size_t(batch_) * side * side * side * 2));
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
     pair_buffer_ = gl::Buffer(pair_capacity * sizeof(interop::BrickPair), "brick pairs");
 }

@@ -57,7 +57,7 @@ struct BrickPair {
 
 // All lengths in voxels of the finest level, positions from the root cube's low corner.
 struct MarchView {
-    vec4 eye;              // w: pixel width at distance 1, times the pixel error
+    vec4 eye;              // w: width of a pixel's cone at distance 1
     vec4 forward;          // unit
     vec4 right;            // half the image's width at distance 1
     vec4 up;               // half the image's height at distance 1

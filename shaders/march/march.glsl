@@ -66,18 +66,15 @@ struct Ray {
     ivec3 voxel;          // finest-level voxel that the ray is in
     float cone_base;      // pixel width at t is cone_base + cone_slope * t
     float cone_slope;
-    bool leaving;         // still inside the surface it started from: what it meets is not counted
-    float leaving_end;    // distance at which it has left in any case
 };
 
-// A voxel of a brick that a ray crosses.
+// An occupied voxel that a ray crosses.
 struct Sample {
     int slot;
     ivec3 voxel;          // in the brick, [0, BRICK_M)
     vec3 middle;          // middle of the chord, brick voxels, [0, BRICK_M]
-    float chord;          // length inside the voxel, in sides of the voxel
-    float t;              // distance of the middle
-    float side;           // of the voxel
+    vec3 centre;          // of the voxel, from the root cube's low corner
+    float t;              // distance of the chord's middle
 };
 
 // Takes one occupied voxel; false stops the ray.
@@ -95,8 +92,6 @@ Ray make_ray(vec3 origin, vec3 direction, float t_end, float cone_base, float co
     ray.voxel = ivec3(0);
     ray.cone_base = cone_base;
     ray.cone_slope = cone_slope;
-    ray.leaving = false;
-    ray.leaving_end = 0.0;
     return ray;
 }
 
@@ -121,25 +116,22 @@ bool enter_root(inout Ray ray) {
     return true;
 }
 
-// Where the ray leaves the aligned cell of side 1 << shift around its voxel.
-float exit_distance(Ray ray, ivec3 low, int shift, out bvec3 leaves) {
-    const vec3 bound = vec3(low + ray.positive * (1 << shift));
+// Steps over the aligned cell of side 1 << shift around the ray's voxel, to the voxel behind it; false when the ray has
+// left the root cube or come to its end.
+bool step_over(inout Ray ray, int shift) {
+    const ivec3 low = (ray.voxel >> shift) << shift;
+    const ivec3 high = low + ((1 << shift) - 1);
+    const bvec3 forward = equal(ray.positive, ivec3(1));
+    const vec3 bound = vec3(mix(low, high + 1, forward));
     const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(1e30), ray.inert);
+    const float t_exit = max(min(t.x, min(t.y, t.z)), ray.t);
     const bool x = t.x <= t.y && t.x <= t.z;
     const bool y = !x && t.y <= t.z;
-    leaves = bvec3(x, y, !x && !y);
-    return max(min(t.x, min(t.y, t.z)), ray.t);
-}
-
-// Steps over the cell to its neighbour; false when the ray has left the root cube or come to its end.
-bool step_over(inout Ray ray, ivec3 low, int shift, float t_exit, bvec3 leaves) {
-    const ivec3 high = low + (1 << shift) - 1;
+    const bvec3 leaves = bvec3(x, y, !x && !y);
     const ivec3 inside = clamp(ivec3(floor(ray.origin + ray.direction * t_exit)), low, high);
     // Rounding must not carry the other coordinates backwards.
-    const bvec3 forward = equal(ray.positive, ivec3(1));
     const ivec3 kept = mix(min(inside, ray.voxel), max(inside, ray.voxel), forward);
-    const ivec3 beyond = mix(low - 1, high + 1, forward);
-    ray.voxel = mix(kept, beyond, leaves);
+    ray.voxel = mix(kept, mix(low - 1, high + 1, forward), leaves);
     ray.t = t_exit;
     return all(equal(ray.voxel >> ROOT_SHIFT, ivec3(0))) && t_exit < ray.t_end;
 }
@@ -180,106 +172,132 @@ int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 #endif
 }
 
-// Marches the brick of the tile around ray.voxel; false when the ray is done.
-bool march_brick(inout Ray ray, int slot, int tile_shift) {
-    const int voxel_shift = tile_shift - M_SHIFT;
-    const ivec3 tile = ray.voxel >> tile_shift;
-    const ivec3 tile_low = tile << tile_shift;
-    const float side = float(1 << voxel_shift);
-    const int first_word = slot * MASK_WORDS_A_SLOT;
-    const uvec2 summary = texelFetch(brick_masks, first_word).xy;
-    int held = -1;  // the block whose mask is at hand
-    uvec2 mask = uvec2(0u);
-    touch(slot);
+// The brick that a ray is in.
+struct Place {
+    int slot;         // -1: none
+    int tile_shift;   // log2 of the tile's side
+    uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
+};
+
+#define DESCENT_FOUND 0    // place holds a brick
+#define DESCENT_EMPTY 1    // nothing here: `empty_shift` is the side of the cell to step over
+#define DESCENT_MISSING 2  // the tile was asked for
+
+// Finds the tile that the ray's cone asks for at its voxel: kd-restart.
+int descend(Ray ray, out Place place, out int empty_shift) {
+    const float width = ray.cone_base + ray.cone_slope * ray.t;
+    uint entry = 0u;
+    uvec4 node = texelFetch(nodes, 0);
+    place.slot = -1;
+    place.tile_shift = ROOT_SHIFT;
+    place.summary = uvec2(0u);
+    empty_shift = 0;
+    for (int level = 0; level < MAX_LEVEL; ++level) {
+        if (float(1 << (place.tile_shift - M_SHIFT)) <= width) break;
+        const ivec3 c = (ray.voxel >> (place.tile_shift - N_SHIFT)) & (TREE_N - 1);
+#if TREE_N == 4
+        const int empty = empty_shift_4(node.xy, c);
+#else
+        const int empty = empty_shift_2(node.x, c);
+#endif
+        if (empty >= 0) {
+            empty_shift = place.tile_shift - N_SHIFT + empty;
+            return DESCENT_EMPTY;
+        }
+        if (node.z == 0u) {
+            query(entry, QUERY_CHILDREN);
+            return DESCENT_MISSING;
+        }
+        entry = node.z + uint(c.x + TREE_N * (c.y + TREE_N * c.z));
+        node = texelFetch(nodes, int(entry));
+        place.tile_shift -= N_SHIFT;
+    }
+    if (node.w == 0u) {
+        query(entry, QUERY_BRICK);
+        return DESCENT_MISSING;
+    }
+    place.slot = int(node.w) - 1;
+    place.summary = texelFetch(brick_masks, place.slot * MASK_WORDS_A_SLOT).xy;
+    touch(place.slot);
+    return DESCENT_FOUND;
+}
+
+#define SKIM_OCCUPIED 0  // the ray's voxel is occupied
+#define SKIM_LEFT 1      // the ray left the tile
+#define SKIM_ENDED 2     // the ray is done
+
+// Skips the empty cells of a brick.
+int skim(inout Ray ray, Place place) {
+    const int voxel_shift = place.tile_shift - M_SHIFT;
+    const ivec3 tile = ray.voxel >> place.tile_shift;
+    const int first_mask = place.slot * MASK_WORDS_A_SLOT + SUMMARY_WORDS;
     // A straight line crosses at most 3 M - 2 cells of a brick.
     for (int cell = 0; cell < 3 * BRICK_M; ++cell) {
-        const ivec3 b = (ray.voxel - tile_low) >> voxel_shift;
-        int empty = empty_block_shift(slot, summary, b >> 2);
+        const ivec3 b = (ray.voxel >> voxel_shift) & (BRICK_M - 1);
+        const ivec3 c = b >> 2;
+        int empty = empty_block_shift(place.slot, place.summary, c);
         int shift = voxel_shift + 2 + empty;
         if (empty < 0) {
-            const ivec3 c = b >> 2;
-            const int block = c.x + BLOCKS_A_SIDE * (c.y + BLOCKS_A_SIDE * c.z);
-            if (block != held) {
-                mask = texelFetch(brick_masks, first_word + SUMMARY_WORDS + block).xy;
-                held = block;
-            }
+            const uvec2 mask =
+                texelFetch(brick_masks, first_mask + c.x + BLOCKS_A_SIDE * (c.y + BLOCKS_A_SIDE * c.z)).xy;
             empty = empty_shift_4(mask, b & 3);
-            shift = voxel_shift + max(empty, 0);
+            if (empty < 0) return SKIM_OCCUPIED;
+            shift = voxel_shift + empty;
         }
-        const ivec3 low = (ray.voxel >> shift) << shift;
-        bvec3 leaves;
-        const float t_exit = exit_distance(ray, low, shift, leaves);
-        if (empty >= 0) {
-            ray.leaving = false;
-        } else {
-            ray.leaving = ray.leaving && ray.t < ray.leaving_end;
-            if (!ray.leaving) {
-                Sample s;
-                s.slot = slot;
-                s.voxel = b;
-                s.t = 0.5 * (ray.t + t_exit);
-                s.side = side;
-                s.chord = (t_exit - ray.t) / side;
-                s.middle = clamp((ray.origin + ray.direction * s.t - vec3(tile_low)) / side, vec3(0.0),
-                                 vec3(float(BRICK_M)));
-                if (!visit(ray, s)) return false;
-            }
-        }
-        if (!step_over(ray, low, shift, t_exit, leaves)) return false;
-        if (any(notEqual(ray.voxel >> tile_shift, tile))) return true;
+        if (!step_over(ray, shift)) return SKIM_ENDED;
+        if (any(notEqual(ray.voxel >> place.tile_shift, tile))) return SKIM_LEFT;
     }
-    return true;
+    return SKIM_LEFT;
 }
 
 // Marches until the ray is done, or until it misses a tile: then it has asked for it, and stands where it resumes.
+//
+// Threads that run side by side all pay for the innermost loop's body, so it only skips; what an occupied voxel costs
+// is outside of it.
 int march(inout Ray ray) {
+    Place place;
+    place.slot = -1;
+    place.tile_shift = ROOT_SHIFT;
+    place.summary = uvec2(0u);
     for (int step = 0; step < STEP_LIMIT; ++step) {
-        const float width = ray.cone_base + ray.cone_slope * ray.t;
-        uint entry = 0u;
-        uvec4 node = texelFetch(nodes, 0);
-        int tile_shift = ROOT_SHIFT;
-        int empty = -1;
-        for (int level = 0; level < MAX_LEVEL; ++level) {
-            if (float(1 << (tile_shift - M_SHIFT)) <= width) break;
-            const ivec3 c = (ray.voxel >> (tile_shift - N_SHIFT)) & (TREE_N - 1);
-#if TREE_N == 4
-            empty = empty_shift_4(node.xy, c);
-#else
-            empty = empty_shift_2(node.x, c);
-#endif
-            if (empty >= 0) break;
-            if (node.z == 0u) {
-                query(entry, QUERY_CHILDREN);
-                return MARCH_MISSING;
-            }
-            entry = node.z + uint(c.x + TREE_N * (c.y + TREE_N * c.z));
-            node = texelFetch(nodes, int(entry));
-            tile_shift -= N_SHIFT;
+        int empty_shift = 0;
+        if (place.slot < 0) {
+            const int descent = descend(ray, place, empty_shift);
+            if (descent == DESCENT_MISSING) return MARCH_MISSING;
         }
-        if (empty >= 0) {
-            const int shift = tile_shift - N_SHIFT + empty;
-            const ivec3 low = (ray.voxel >> shift) << shift;
-            bvec3 leaves;
-            const float t_exit = exit_distance(ray, low, shift, leaves);
-            ray.leaving = false;
-            if (!step_over(ray, low, shift, t_exit, leaves)) return MARCH_DONE;
-        } else {
-            if (node.w == 0u) {
-                query(entry, QUERY_BRICK);
-                return MARCH_MISSING;
-            }
-            if (!march_brick(ray, int(node.w) - 1, tile_shift)) return MARCH_DONE;
+        if (place.slot < 0) {
+            if (!step_over(ray, empty_shift)) return MARCH_DONE;
+            continue;
         }
+        const int skimmed = skim(ray, place);
+        if (skimmed == SKIM_ENDED) return MARCH_DONE;
+        if (skimmed == SKIM_LEFT) {
+            place.slot = -1;
+            continue;
+        }
+        const int voxel_shift = place.tile_shift - M_SHIFT;
+        const ivec3 tile = ray.voxel >> place.tile_shift;
+        const ivec3 low = (ray.voxel >> voxel_shift) << voxel_shift;
+        const float side = float(1 << voxel_shift);
+        const float t_in = ray.t;
+        Sample s;
+        s.slot = place.slot;
+        s.voxel = (low - (tile << place.tile_shift)) >> voxel_shift;
+        s.centre = vec3(low) + 0.5 * side;
+        const bool goes_on = step_over(ray, voxel_shift);
+        s.t = 0.5 * (t_in + ray.t);
+        s.middle = clamp((ray.origin + ray.direction * s.t - vec3(tile << place.tile_shift)) / side, vec3(0.0),
+                         vec3(float(BRICK_M)));
+        if (!visit(ray, s) || !goes_on) return MARCH_DONE;
+        if (any(notEqual(ray.voxel >> place.tile_shift, tile))) place.slot = -1;
     }
     atomicAdd(counters.step_limit_hits, 1u);
     return MARCH_DONE;
 }
 
-// Opacity of a voxel for the length of the chord in it: the voxel's own is for one side.
-float opacity_of(float coverage, float chord) {
-    const float transmittance = 1.0 - coverage * (1.0 - FULL_COVERAGE_TRANSMITTANCE);
-    return 1.0 - pow(transmittance, max(chord, 0.0));
-}
+// What is left of `transmittance` behind a voxel. Voxels of one surface cover different parts of a pixel, so their
+// shares add up instead of multiplying; and from half covered on, no light may leak between them.
+float behind(float transmittance, float coverage) { return max(transmittance - min(2.0 * coverage, 1.0), 0.0); }
 
 ivec3 slot_texel(int slot) {
     const ivec3 place = ivec3(slot % pool_slots.x, slot / pool_slots.x % pool_slots.y,
@@ -303,21 +321,19 @@ vec3 pool_coordinate(Sample s) {
 
 // --- ray states and lists ---
 
-uvec2 pack_voxel(ivec3 v, bool leaving) {
+uvec2 pack_voxel(ivec3 v) {
     const uvec3 u = uvec3(v);
-    return uvec2(u.x | u.y << 21, u.y >> 11 | u.z << 10 | (leaving ? 0x80000000u : 0u));
+    return uvec2(u.x | u.y << 21, u.y >> 11 | u.z << 10);
 }
 ivec3 unpack_voxel(uvec2 p) {
     return ivec3(p.x & 0x1FFFFFu, p.x >> 21 | (p.y & 0x3FFu) << 11, p.y >> 10 & 0x1FFFFFu);
 }
 
 void store_position(inout RayState state, Ray ray) {
-    state.voxel_t_weight.xy = pack_voxel(ray.voxel, ray.leaving);
+    state.voxel_t_weight.xy = pack_voxel(ray.voxel);
     state.voxel_t_weight.z = floatBitsToUint(ray.t);
 }
 void load_position(inout Ray ray, RayState state) {
-    const uvec2 packed_voxel = state.voxel_t_weight.xy;
-    ray.voxel = unpack_voxel(packed_voxel);
-    ray.leaving = (packed_voxel.y & 0x80000000u) != 0u;
+    ray.voxel = unpack_voxel(state.voxel_t_weight.xy);
     ray.t = uintBitsToFloat(state.voxel_t_weight.z);
 }

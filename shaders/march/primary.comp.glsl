@@ -16,8 +16,8 @@ uniform uint shadow_list;
 RayState state;
 
 bool visit(inout Ray ray, Sample s) {
-    const float opacity = opacity_of(coverage_of(s), s.chord);
-    const float weight = state.color.a * opacity;
+    const float left = behind(state.color.a, coverage_of(s));
+    const float weight = state.color.a - left;
     vec3 color = vec3(1.0);
     const vec3 coordinate = pool_coordinate(s);
 #if HAS_COLOR
@@ -32,7 +32,7 @@ bool visit(inout Ray ray, Sample s) {
         state.voxel_t_weight.w = floatBitsToUint(weight);
         state.normal_depth.w = s.t;
     }
-    state.color.a -= weight;
+    state.color.a = left;
     return state.color.a > OPAQUE_TRANSMITTANCE;
 }
 

@@ -13,8 +13,15 @@ uniform uint list_out;
 
 float visibility;
 
+// The receiver: a voxel near its tangent plane, and near it, is its own surface and casts no shadow on it.
+vec3 receiver;
+vec3 receiver_normal;
+float own_height;
+float own_reach;
+
 bool visit(inout Ray ray, Sample s) {
-    visibility *= 1.0 - opacity_of(coverage_of(s), s.chord);
+    const bool own = s.t < own_reach && dot(s.centre - receiver, receiver_normal) < own_height;
+    if (!own) visibility = behind(visibility, coverage_of(s));
     return visibility > OPAQUE_TRANSMITTANCE;
 }
 
@@ -32,25 +39,27 @@ void main() {
     const ivec2 pixel = ivec2(int(index) % view.size_shadow.x, int(index) / view.size_shadow.x);
     RayState state = rays[index];
 
-    // The ray starts a voxel above the surface, and what it meets before its first empty cell is that surface still.
     const vec3 direction = pixel_direction(pixel);
     const float width = view.eye.w * state.normal_depth.w;
     const float side = voxel_side(width);
-    const vec3 start = view.eye.xyz + direction * state.normal_depth.w + facing_normal(state, direction) * side;
-    const vec3 to_light = direction_to_light(start);
-    const float reach = view.light.w > 0.5 ? distance(view.light.xyz, start) : 1e30;
-    Ray ray = make_ray(start, to_light, reach, width, 0.0);
+    receiver = view.eye.xyz + direction * state.normal_depth.w;
+    receiver_normal = facing_normal(state, direction);
+    const vec3 to_light = direction_to_light(receiver);
+    // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
+    // at a low angle stays among them for longer.
+    own_height = 1.75 * side;
+    own_reach = side * clamp(2.5 / max(dot(receiver_normal, to_light), 1e-3), 8.0, 64.0);
 
+    const float reach = view.light.w > 0.5 ? distance(view.light.xyz, receiver) : 1e30;
+    Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
     bool inside = true;
     if (all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)))) {
         visibility = 1.0;
         inside = enter_root(ray);
-        ray.leaving = true;
     } else {
         load_position(ray, state);
         visibility = uintBitsToFloat(state.voxel_t_weight.w);
     }
-    ray.leaving_end = 2.0 * side;
 
     if (inside && march(ray) == MARCH_MISSING) {
         store_position(state, ray);

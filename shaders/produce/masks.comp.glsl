@@ -24,8 +24,8 @@ void main() {
     for (int z = 0; z < 4; ++z) {
         for (int y = 0; y < 4; ++y) {
             for (int x = 0; x < 4; ++x) {
-                const uint word = scratch_word(tile, low + ivec3(x, y, z) + 1) + uint(SCRATCH_MASK);
-                const uint bit = (scratch[word] | scratch[word + 1u]) != 0u ? 1u : 0u;
+                const uint voxel = scratch_voxel(tile, low + ivec3(x, y, z) + 1);
+                const uint bit = (scratch[2u * voxel] | scratch[2u * voxel + 1u]) != 0u ? 1u : 0u;
                 if (z < 2) mask.x |= bit << (x + 4 * y + 16 * z);
                 else mask.y |= bit << (x + 4 * y + 16 * (z - 2));
             }

@@ -33,25 +33,27 @@ void main() {
     const uint tile = i / uint(VOXELS);
     const int v = int(i % uint(VOXELS));
     const ivec3 place = ivec3(v % SIDE, v / SIDE % SIDE, v / (SIDE * SIDE));
-    const uint word = i * uint(SCRATCH_WORDS);
-    const uvec2 mask = uvec2(scratch[word], scratch[word + 1u]);
+    const uvec2 mask = uvec2(scratch[2u * i], scratch[2u * i + 1u]);
 
     float covered = 0.0;
     vec3 normal = vec3(0.0);
     vec3 color = vec3(0.0);
     if ((mask.x | mask.y) != 0u) {
+        const uint sums = sums_offset + i * uint(SUM_WORDS);
         covered = coverage(mask);
-        const vec3 sum = vec3(int(scratch[word + SCRATCH_NORMAL]), int(scratch[word + SCRATCH_NORMAL + 1u]),
-                              int(scratch[word + SCRATCH_NORMAL + 2u]));
-        const float size = length(sum);
-        if (size > 0.0) normal = sum / size;
+        const vec3 normals = vec3(int(scratch[sums + SUM_NORMAL]), int(scratch[sums + SUM_NORMAL + 1u]),
+                                  int(scratch[sums + SUM_NORMAL + 2u]));
+        const float size = length(normals);
+        if (size > 0.0) normal = normals / size;
 #if HAS_COLOR
-        const float weight = float(min(scratch[word + SCRATCH_WEIGHT], SCRATCH_WEIGHT_LIMIT));
-        const vec3 colors = vec3(scratch[word + SCRATCH_COLOR], scratch[word + SCRATCH_COLOR + 1u],
-                                 scratch[word + SCRATCH_COLOR + 2u]);
-        color = sqrt(clamp(colors / (weight * SCRATCH_COLOR_UNIT), 0.0, 1.0));
+        const float weight = float(min(scratch[sums + SUM_WEIGHT], WEIGHT_LIMIT));
+        const vec3 colors = vec3(scratch[sums + SUM_COLOR], scratch[sums + SUM_COLOR + 1u],
+                                 scratch[sums + SUM_COLOR + 2u]);
+        color = sqrt(clamp(colors / (weight * COLOR_UNIT), 0.0, 1.0));
 #endif
-        for (uint w = 0u; w < uint(SCRATCH_WORDS); ++w) scratch[word + w] = 0u;
+        scratch[2u * i] = 0u;
+        scratch[2u * i + 1u] = 0u;
+        for (uint w = 0u; w < uint(SUM_WORDS); ++w) scratch[sums + w] = 0u;
     }
     const ivec3 texel = tiles[tile].slot_texel.xyz + place;
     // Both are weighted with the coverage, so that a filtered fetch does not mix in what is empty.

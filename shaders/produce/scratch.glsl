@@ -7,23 +7,25 @@
 #define SIDE (BRICK_M + 2)           // voxels a side, border included
 #define VOXELS (SIDE * SIDE * SIDE)
 
-#define SCRATCH_MASK 0               // 2 words: 4^3 finer voxels, bit x + 4 (y + 4 z)
-#define SCRATCH_WEIGHT 2             // finer voxels, counted for each triangle
-#define SCRATCH_NORMAL 3             // 3 words: weighted normals, SCRATCH_NORMAL_UNIT = 1
-#define SCRATCH_COLOR 6              // 3 words: weighted linear colours, SCRATCH_COLOR_UNIT = 1
+// Two arrays, so that empty voxels, which are most, cost their masks alone.
+//     masks      2 words a voxel: 4^3 finer voxels, bit x + 4 (y + 4 z)
+//     sums       SUM_WORDS a voxel, from word `sums_offset` on
+#define SUM_WEIGHT 0               // finer voxels, counted for each triangle
+#define SUM_NORMAL 1               // 3 words: weighted normals, NORMAL_UNIT = 1
+#define SUM_COLOR 4                // 3 words: weighted linear colours, COLOR_UNIT = 1
 #if HAS_COLOR
-#define SCRATCH_WORDS 9
+#define SUM_WORDS 7
 #else
-#define SCRATCH_WORDS 6
+#define SUM_WORDS 4
 #endif
-#define SCRATCH_NORMAL_UNIT 511.0
-#define SCRATCH_COLOR_UNIT 1023.0
-#define SCRATCH_WEIGHT_LIMIT 1048576u  // more would overflow the sums: what comes later no longer changes the mean
+#define NORMAL_UNIT 511.0
+#define COLOR_UNIT 1023.0
+#define WEIGHT_LIMIT 1048576u      // more would overflow the sums: what comes later no longer changes the mean
 
 layout(std430, binding = SSBO_BRICK_TILES) readonly buffer TileBlock { BrickTile tiles[]; };
 layout(std430, binding = SSBO_BRICK_SCRATCH) buffer ScratchBlock { uint scratch[]; };
 
-// First scratch word of a voxel; v in [0, SIDE), border included.
-uint scratch_word(uint tile, ivec3 v) {
-    return (tile * uint(VOXELS) + uint(v.x + SIDE * (v.y + SIDE * v.z))) * uint(SCRATCH_WORDS);
-}
+uniform uint sums_offset;
+
+// Number of a voxel in the batch; v in [0, SIDE), border included.
+uint scratch_voxel(uint tile, ivec3 v) { return tile * uint(VOXELS) + uint(v.x + SIDE * (v.y + SIDE * v.z)); }

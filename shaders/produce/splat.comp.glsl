@@ -6,6 +6,7 @@
 #include "produce/scratch.glsl"
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/surface.glsl"
+#include "voxelize/surface_attributes.glsl"
 #if HAS_MASK
 #include "voxelize/alpha_mask.glsl"
 #endif
@@ -59,60 +60,67 @@ SurfacePoint point_under(Patch s, vec3 lattice) {
     return SurfacePoint(s.vertices, vec3(1.0 - w.x - w.y, w));
 }
 
-// The marks of the triangle in the four finer voxels of one row inside brick voxel `v`, from bit 0.
-uint row_bits(ExactTriangle fine, uint triangle, ivec3 v, ivec2 row) {
-    ivec2 span = row_span(fine, row);
-    span = ivec2(max(span.x, 4 * v.x), min(span.y, 4 * v.x + 3));
-    if (span.x > span.y) return 0u;
-    uint bits = ((2u << uint(span.y - span.x)) - 1u) << uint(span.x - 4 * v.x);
+// The marks of the triangle in the 4^3 finer voxels of voxel `v`. A finer row in doubt takes what it may hold: coverage is
+// an estimate, and whether the voxel is occupied at all has been decided exactly.
+uvec2 fine_mask(ExactTriangle fine, uint triangle, ivec3 v) {
+    uvec2 mask = uvec2(0u);
+    for (int i = 0; i < 16; ++i) {
+        const ivec2 row = 4 * v.yz + ivec2(i & 3, i >> 2);
+        bool in_doubt;
+        ivec2 span = filtered_row_span(fine, clamp(row, fine.low.yz, fine.high.yz), in_doubt);
+        span = ivec2(max(span.x - 4 * v.x, 0), min(span.y - 4 * v.x, 3));
+        const bool meets = span.x <= span.y && all(greaterThanEqual(row, fine.low.yz)) &&
+                           all(lessThanEqual(row, fine.high.yz));
+        uint bits = meets ? (0xFu << uint(span.x & 3)) & (0xFu >> uint(3 - span.y & 3)) : 0u;
 #if HAS_MASK
-    for (int x = span.x; x <= span.y; ++x) {
-        if (!mask_touches(triangle, ivec3(x, row), fine.shift)) bits &= ~(1u << uint(x - 4 * v.x));
-    }
+        for (int x = 0; x < 4; ++x) {
+            if ((bits >> x & 1u) != 0u && !mask_touches(triangle, ivec3(4 * v.x + x, row), fine.shift)) {
+                bits &= ~(1u << x);
+            }
+        }
 #endif
-    return bits;
+        if (i < 8) mask.x |= bits << (4 * i);
+        else mask.y |= bits << (4 * i - 32);
+    }
+    return mask;
 }
 
-// Marks one brick voxel; `v` in voxels of the root cube, `word` its place in the scratch.
-void splat(ExactTriangle fine, Patch s, uint triangle, ivec3 v, uint word) {
-    const float fine_side = float(1 << fine.shift);
-    uvec2 mask = uvec2(0u);
-    float weight = 0.0;
-    vec3 normal = vec3(0.0);
-    vec3 color = vec3(0.0);
-    const ivec2 row_low = max(4 * v.yz, fine.low.yz);
-    const ivec2 row_high = min(4 * v.yz + 3, fine.high.yz);
-    for (int z = row_low.y; z <= row_high.y; ++z) {
-        for (int y = row_low.x; y <= row_high.x; ++y) {
-            const uint bits = row_bits(fine, triangle, v, ivec2(y, z));
-            if (bits == 0u) continue;
-            const int place = 4 * (y & 3) + 16 * (z & 1);
-            if ((z & 2) == 0) mask.x |= bits << place;
-            else mask.y |= bits << place;
-            const float count = float(bitCount(bits));
-            const float middle = float(4 * v.x) + 0.5 * float(findLSB(bits) + findMSB(bits) + 1);
-            const SurfacePoint p = point_under(s, vec3(middle, float(y) + 0.5, float(z) + 0.5) * fine_side);
-            weight += count;
-            normal += count * normal_at(p, s.normal);
-#if HAS_COLOR
-            color += count * color_at(p, s.material);
-#endif
-        }
+// Mean place of the marks, in voxels from the low corner of their voxel.
+vec3 middle_of(uvec2 mask, float count) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        const uint x = 0x11111111u << i;
+        const uint y = 0x000F000Fu << (4 * i);
+        const uint z = i % 2 == 0 ? 0x0000FFFFu : 0xFFFF0000u;
+        const uint in_z = i < 2 ? mask.x & z : mask.y & z;
+        sum += (float(i) + 0.5) * vec3(bitCount(mask.x & x) + bitCount(mask.y & x),
+                                       bitCount(mask.x & y) + bitCount(mask.y & y), bitCount(in_z));
     }
-    if (weight == 0.0) return;
-    if (mask.x != 0u) atomicOr(scratch[word + SCRATCH_MASK], mask.x);
-    if (mask.y != 0u) atomicOr(scratch[word + SCRATCH_MASK + 1], mask.y);
-    if (atomicAdd(scratch[word + SCRATCH_WEIGHT], uint(weight)) > SCRATCH_WEIGHT_LIMIT) return;
+    return sum / (4.0 * count);
+}
+
+// Adds the triangle's part in one voxel; `voxel` is its number in the scratch.
+void splat(ExactTriangle fine, Patch s, uint triangle, ivec3 v, uint voxel) {
+    const uvec2 mask = fine_mask(fine, triangle, v);
+    const int count = bitCount(mask.x) + bitCount(mask.y);
+    if (count == 0) return;
+    if (mask.x != 0u) atomicOr(scratch[2u * voxel], mask.x);
+    if (mask.y != 0u) atomicOr(scratch[2u * voxel + 1u], mask.y);
+    const uint sums = sums_offset + voxel * uint(SUM_WORDS);
+    if (atomicAdd(scratch[sums + SUM_WEIGHT], uint(count)) > WEIGHT_LIMIT) return;
+
+    const float weight = float(count);
+    const SurfacePoint p = point_under(s, (vec3(v) + middle_of(mask, weight)) * float(4 << fine.shift));
     // Two's complement: negative sums wrap and come out right.
-    const ivec3 n = ivec3(round(normal * SCRATCH_NORMAL_UNIT));
-    atomicAdd(scratch[word + SCRATCH_NORMAL], uint(n.x));
-    atomicAdd(scratch[word + SCRATCH_NORMAL + 1], uint(n.y));
-    atomicAdd(scratch[word + SCRATCH_NORMAL + 2], uint(n.z));
+    const ivec3 n = ivec3(round(normal_at(p, s.normal) * weight * NORMAL_UNIT));
+    atomicAdd(scratch[sums + SUM_NORMAL], uint(n.x));
+    atomicAdd(scratch[sums + SUM_NORMAL + 1], uint(n.y));
+    atomicAdd(scratch[sums + SUM_NORMAL + 2], uint(n.z));
 #if HAS_COLOR
-    const uvec3 c = uvec3(round(clamp(color, 0.0, 64.0) * SCRATCH_COLOR_UNIT));
-    atomicAdd(scratch[word + SCRATCH_COLOR], c.x);
-    atomicAdd(scratch[word + SCRATCH_COLOR + 1], c.y);
-    atomicAdd(scratch[word + SCRATCH_COLOR + 2], c.z);
+    const uvec3 c = uvec3(round(clamp(color_at(p, s.material), 0.0, 1.0) * weight * COLOR_UNIT));
+    atomicAdd(scratch[sums + SUM_COLOR], c.x);
+    atomicAdd(scratch[sums + SUM_COLOR + 1], c.y);
+    atomicAdd(scratch[sums + SUM_COLOR + 2], c.z);
 #endif
 }
 
@@ -137,13 +145,24 @@ void main() {
     const ivec3 region_low = tile.low_shift.xyz - 1;
     const ivec3 low = max(coarse.low, region_low + ivec3(0, 0, first_slice));
     const ivec3 high = min(coarse.high, region_low + ivec3(SIDE - 1, SIDE - 1, first_slice + slice_count - 1));
-    for (int z = low.z; z <= high.z; ++z) {
-        for (int y = low.y; y <= high.y; ++y) {
-            const ivec2 span = row_span(coarse, ivec2(y, z));
-            for (int x = max(span.x, low.x); x <= min(span.y, high.x); ++x) {
-                const ivec3 v = ivec3(x, y, z);
-                splat(fine, s, triangle, v, scratch_word(tile_index, v - region_low));
+    if (any(greaterThan(low, high))) return;
+    // One loop over rows and voxels alike: threads that run side by side wait for the longest, not for the product of
+    // the longest of each nested loop.
+    ivec3 v = ivec3(0, low.y - 1, low.z);
+    int last = -1;
+    for (;;) {
+        if (v.x > last) {
+            ++v.y;
+            if (v.y > high.y) {
+                v.y = low.y;
+                ++v.z;
             }
+            if (v.z > high.z) break;
+            const ivec2 span = row_span(coarse, v.yz);
+            v.x = max(span.x, low.x);
+            last = min(span.y, high.x);
         }
+        if (v.x <= last) splat(fine, s, triangle, v, scratch_voxel(tile_index, v - region_low));
+        ++v.x;
     }
 }

@@ -1,6 +1,5 @@
 // Base colour and normal of a surface at a point of one of its triangles.
-
-layout(std430, binding = SSBO_SURFACE_ATTRIBUTES) readonly buffer AttributeBlock { SurfaceAttributes attributes[]; };
+#include "voxelize/surface_attributes.glsl"
 
 // Inverse of the octahedral map (Cigolle et al. 2014); 0 = no normal.
 vec3 decode_normal(uint packed_normal) {
@@ -31,8 +30,6 @@ vec3 normal_at(SurfacePoint p, vec3 triangle_normal) {
 }
 
 #if HAS_COLOR
-layout(std430, binding = SSBO_SURFACE_TEXELS) readonly buffer TexelBlock { uint texels[]; };
-
 // A texel's number along one axis, by glTF's wrap modes (MATERIAL_WRAP_*).
 uint wrapped(float coordinate, uint size, uint mode) {
     const float n = float(size);
@@ -57,7 +54,7 @@ vec3 color_at(SurfacePoint p, SurfaceMaterial material) {
         const vec2 uv = p.weights.x * attributes[p.vertices.x].texcoord +
                         p.weights.y * attributes[p.vertices.y].texcoord +
                         p.weights.z * attributes[p.vertices.z].texcoord;
-        color *= linear_from_srgb(unpackUnorm4x8(nearest_texel(material, uv)).rgb);
+        color *= linear_from_srgb(nearest_texel(material, uv).rgb);
     }
     return color;
 }
