@@ -9,11 +9,23 @@ Camera framing_camera(const scenes::Bounds& bounds, double aspect) {
     Camera camera;
     if (bounds.empty()) return camera;
     const glm::dvec3 centre = 0.5 * (bounds.low + bounds.high);
-    const double radius = std::max(0.5 * glm::length(bounds.high - bounds.low), 1e-12);
-    // The bounding sphere fits the narrower of the two angles.
-    const double half_angle = std::atan(std::tan(0.5 * camera.yfov) * std::min(aspect, 1.0));
+    const glm::dvec3 half = 0.5 * (bounds.high - bounds.low);
+    const glm::dvec3 back = glm::normalize(glm::dvec3(0.55, 0.45, 1.0));
+    const glm::dvec3 right = glm::normalize(glm::cross(camera.up, back));
+    const glm::dvec3 up = glm::cross(back, right);
+    const double tan_y = std::tan(0.5 * camera.yfov);
+    const double tan_x = tan_y * aspect;
+    double distance = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 corner = half * glm::dvec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+        const double beside =
+            std::max(std::abs(glm::dot(corner, right)) / tan_x, std::abs(glm::dot(corner, up)) / tan_y);
+        distance = std::max(distance, beside + glm::dot(corner, back));
+    }
+    constexpr double margin = 1.06;
+    const double least = std::max(1e-12, 1e-12 * glm::length(centre));  // a scene of one point
     camera.target = centre;
-    camera.eye = centre + glm::normalize(glm::dvec3(0.55, 0.45, 1.0)) * (radius / std::sin(half_angle));
+    camera.eye = centre + back * std::max(distance * margin, least);
     return camera;
 }
 

@@ -55,7 +55,7 @@ struct TreeOptions {
     int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
     std::size_t node_pool_bytes = 8U << 20U;
-    std::size_t brick_pool_bytes = 128U << 20U;
+    std::size_t brick_pool_bytes = 256U << 20U;
 };
 
 /// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended

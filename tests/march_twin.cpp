@@ -9,7 +9,7 @@
 #include "scenes/snapshot.h"
 #include "voxelizer/surface.h"
 
-namespace cairn::testing {
+namespace cairn::test {
 namespace {
 
 using glm::dvec3;
@@ -253,4 +253,4 @@ renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& vie
     return image;
 }
 
-}  // namespace cairn::testing
+}  // namespace cairn::test

@@ -10,7 +10,7 @@
 
 /// The renderer's twin: the same picture from one dense grid on the CPU, in double, with no tree, no bricks, no masks
 /// and no passes. Plain code that is easy to believe; it shares only the definitions with what it checks.
-namespace cairn::testing {
+namespace cairn::test {
 
 /// What bricks hold, for every voxel of the root cube, with the bits that the pool's texels keep of it.
 struct DenseVoxels {
@@ -30,4 +30,4 @@ struct DenseVoxels {
 /// Marches the dense grid at its own resolution, whatever the distance.
 [[nodiscard]] renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& view);
 
-}  // namespace cairn::testing
+}  // namespace cairn::test

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-namespace cairn::testing {
+namespace cairn::test {
 namespace {
 
 using glm::vec3;
@@ -56,13 +56,17 @@ scenes::Scene ball_over_floor() {
     std::array<vec3, 12> p = {vec3(-1, g, 0), vec3(1, g, 0), vec3(-1, -g, 0), vec3(1, -g, 0),
                               vec3(0, -1, g), vec3(0, 1, g), vec3(0, -1, -g), vec3(0, 1, -g),
                               vec3(g, 0, -1), vec3(g, 0, 1), vec3(-g, 0, -1), vec3(-g, 0, 1)};
-    for (vec3& v : p) v = glm::normalize(v);
-    constexpr int sides[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                                  {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                                  {3, 8, 9},  {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    for (vec3& v : p)
+        v = glm::normalize(v);
+    constexpr int sides[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                  {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                  {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                  {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
     std::vector<vec3> corners;
-    for (const auto& s : sides) add_ball_patch(corners, p[std::size_t(s[0])], p[std::size_t(s[1])], p[std::size_t(s[2])], 2);
-    for (vec3& v : corners) v.y += 1.3F;
+    for (const auto& s : sides)
+        add_ball_patch(corners, p[std::size_t(s[0])], p[std::size_t(s[1])], p[std::size_t(s[2])], 2);
+    for (vec3& v : corners)
+        v.y += 1.3F;
     add_square(corners, 2.0F, 0.0F);
     scenes::Scene scene = triangles(std::move(corners));
     scene.nodes[0].trs.rotation = glm::angleAxis(0.2, glm::normalize(glm::dvec3(0.3, 1.0, 0.6)));
@@ -87,4 +91,4 @@ scenes::Scene sheet(const glm::vec4& color) {
     return scene;
 }
 
-}  // namespace cairn::testing
+}  // namespace cairn::test

@@ -3,7 +3,7 @@
 #include "scenes/scene.h"
 
 /// Small scenes whose right picture can be told by hand. Flat normals, no textures.
-namespace cairn::testing {
+namespace cairn::test {
 
 /// A ball of 320 triangles, a little above a floor of two; tilted so that nothing lies on voxel planes.
 [[nodiscard]] scenes::Scene ball_over_floor();
@@ -17,4 +17,4 @@ namespace cairn::testing {
 /// A scene of one triangle mesh, not indexed, in one white material.
 [[nodiscard]] scenes::Scene triangles(std::vector<glm::vec3> corners);
 
-}  // namespace cairn::testing
+}  // namespace cairn::test

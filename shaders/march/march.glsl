@@ -191,7 +191,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
     place.summary = uvec2(0u);
-    empty_shift = 0;
+    empty_shift = ROOT_SHIFT;
+    if (MAX_LEVEL > 0 && (node.x | node.y) == 0u) return DESCENT_EMPTY;  // nothing in the whole scene
     for (int level = 0; level < MAX_LEVEL; ++level) {
         if (float(1 << (place.tile_shift - M_SHIFT)) <= width) break;
         const ivec3 c = (ray.voxel >> (place.tile_shift - N_SHIFT)) & (TREE_N - 1);
