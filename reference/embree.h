@@ -13,8 +13,12 @@
 namespace cairn::reference {
 
 #if RTC_VERSION_MAJOR >= 4
-inline void intersect(RTCScene scene, RTCRayHit& hit) { rtcIntersect1(scene, &hit); }
-inline void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray); }
+inline void intersect(RTCScene scene, RTCRayHit& hit) {
+    rtcIntersect1(scene, &hit);
+}
+inline void occluded(RTCScene scene, RTCRay& ray) {
+    rtcOccluded1(scene, &ray);
+}
 #else
 inline void intersect(RTCScene scene, RTCRayHit& hit) {
     RTCIntersectContext context;

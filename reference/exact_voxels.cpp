@@ -70,7 +70,8 @@ public:
                 colors[std::size_t(corner)] = attributes.color;
             }
         }
-        return ExactMask(positions(triangle), texcoords, colors, surface_.materials[material], surface_.texels);
+        return ExactMask(positions(triangle), texcoords, colors, surface_.materials[material],
+                         surface_.texels);
     }
 
 private:
@@ -108,11 +109,13 @@ public:
         rtcAttachGeometry(scene_.get(), geometry.get());
         rtcCommitScene(scene_.get());
         if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) {
-            throw Error(Fault::memory, "reference", "Embree cannot hold the triangles", "choose a smaller scene");
+            throw Error(Fault::memory, "reference", "Embree cannot hold the triangles",
+                        "choose a smaller scene");
         }
     }
 
-    [[nodiscard]] std::vector<std::uint32_t> near_box(const glm::i64vec3& low, const glm::i64vec3& high) const {
+    [[nodiscard]] std::vector<std::uint32_t> near_box(const glm::i64vec3& low,
+                                                      const glm::i64vec3& high) const {
         const glm::dvec3 centre = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
         std::vector<std::uint32_t> found;
         RTCPointQuery query;
@@ -160,7 +163,8 @@ public:
         const glm::i64vec3 box_low = glm::i64vec3(region_.origin + low) * unit;
         std::vector<std::uint32_t> inside;
         for (const std::uint32_t triangle : candidates) {
-            if (!triangle_meets_box(triangles_.positions(triangle), box_low, box_low + std::int64_t(side) * unit)) {
+            if (!triangle_meets_box(triangles_.positions(triangle), box_low,
+                                    box_low + std::int64_t(side) * unit)) {
                 continue;
             }
             if (side > 1) {
@@ -200,7 +204,8 @@ BitGrid exact_voxels(const Surface& surface, const Region& region) {
             const glm::ivec3 low = cell_side * glm::ivec3(x, column % cells.y, column / cells.y);
             const glm::i64vec3 box_low = glm::i64vec3(region.origin + low) * unit;
             std::vector<std::uint32_t> found = candidates.near_box(box_low, box_low + unit * cell_side);
-            for (std::size_t i = triangles.near_count(); i < triangles.count(); ++i) found.push_back(std::uint32_t(i));
+            for (std::size_t i = triangles.near_count(); i < triangles.count(); ++i)
+                found.push_back(std::uint32_t(i));
             filler.fill(low, cell_side, found);
         }
     });
@@ -217,9 +222,11 @@ Comparison compare(const BitGrid& ours, const BitGrid& truth) {
         out.missing += std::uint64_t(std::popcount(missing));
         out.extra += std::uint64_t(std::popcount(extra));
         const auto row = std::int64_t(i / std::size_t(words_per_row));
-        for (std::uint32_t left = missing | extra; left != 0 && out.first_different.size() < 8; left &= left - 1) {
-            out.first_different.emplace_back(int(i % std::size_t(words_per_row)) * 32 + std::countr_zero(left),
-                                             row % truth.size.y, row / truth.size.y);
+        for (std::uint32_t left = missing | extra; left != 0 && out.first_different.size() < 8;
+             left &= left - 1) {
+            out.first_different.emplace_back(
+                int(i % std::size_t(words_per_row)) * 32 + std::countr_zero(left), row % truth.size.y,
+                row / truth.size.y);
         }
     }
     return out;

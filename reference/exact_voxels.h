@@ -11,15 +11,16 @@
 
 namespace cairn::reference {
 
-/// The truth: every voxel of the region whose closed box meets a closed triangle of the surface, as the alpha masks
-/// leave it. Embree finds candidates, exact predicates in 128-bit integers decide; runs on all cores.
+/// The truth: every voxel of the region whose closed box meets a closed triangle of the surface, as the alpha
+/// masks leave it. Embree finds candidates, exact predicates in 128-bit integers decide; runs on all cores.
 /// @throws Error  Fault::memory when Embree cannot hold the triangles.
-[[nodiscard]] voxelizer::BitGrid exact_voxels(const voxelizer::Surface& surface, const voxelizer::Region& region);
+[[nodiscard]] voxelizer::BitGrid exact_voxels(const voxelizer::Surface& surface,
+                                              const voxelizer::Region& region);
 
 struct Comparison {
-    std::uint64_t occupied = 0;  ///< in the truth
-    std::uint64_t missing = 0;   ///< occupied in the truth only
-    std::uint64_t extra = 0;     ///< occupied in ours only
+    std::uint64_t occupied = 0;               ///< in the truth
+    std::uint64_t missing = 0;                ///< occupied in the truth only
+    std::uint64_t extra = 0;                  ///< occupied in ours only
     std::vector<glm::ivec3> first_different;  ///< at most eight, by z, y, x
 };
 

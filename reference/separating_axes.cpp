@@ -16,7 +16,8 @@ bool separates(const Wide3& axis, const std::array<Wide3, 3>& triangle, const gl
     const Int128 c = dot(axis, triangle[2]);
     Int128 low = 0;
     Int128 high = 0;
-    for (const Int128 extent : {axis.x * size.x, axis.y * size.y, axis.z * size.z}) (extent < 0 ? low : high) += extent;
+    for (const Int128 extent : {axis.x * size.x, axis.y * size.y, axis.z * size.z})
+        (extent < 0 ? low : high) += extent;
     return std::min({a, b, c}) > high || std::max({a, b, c}) < low;
 }
 

@@ -21,7 +21,8 @@ BitGrid half(const BitGrid& fine) {
         for (int y = 0; y < fine.size.y; ++y) {
             const std::uint32_t* const in = &fine.words[fine.word_index(0, y, z)];
             std::uint32_t* const out = &coarse.words[coarse.word_index(0, y / 2, z / 2)];
-            for (int w = 0; w < fine_words; ++w) out[w / 2] |= or_of_pairs(in[w]) << (w % 2 * 16);
+            for (int w = 0; w < fine_words; ++w)
+                out[w / 2] |= or_of_pairs(in[w]) << (w % 2 * 16);
         }
     }
     return coarse;
@@ -31,7 +32,8 @@ BitGrid half(const BitGrid& fine) {
 
 std::uint64_t BitGrid::count() const {
     std::uint64_t sum = 0;
-    for (const std::uint32_t word : words) sum += std::uint64_t(std::popcount(word));
+    for (const std::uint32_t word : words)
+        sum += std::uint64_t(std::popcount(word));
     return sum;
 }
 

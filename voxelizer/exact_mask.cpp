@@ -22,7 +22,8 @@ Line at_most(const std::array<std::int64_t, 3>& values, std::int64_t bound) {
     return {bound - values[0], bound - values[1], bound - values[2]};
 }
 
-/// The corners of what lies on the right side of all lines, the triangle's own three among them; none = empty.
+/// The corners of what lies on the right side of all lines, the triangle's own three among them; none =
+/// empty.
 std::vector<Wide3> corners_of(const std::vector<Line>& lines) {
     std::vector<Wide3> corners;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -40,10 +41,13 @@ std::vector<Wide3> corners_of(const std::vector<Line>& lines) {
 
 std::int64_t wrapped(std::int64_t texel, std::int64_t period, std::int64_t size, std::uint32_t mode) {
     // Far from zero only the remainder by two textures matters, or the end.
-    const std::int64_t place = texel + std::clamp<std::int64_t>(period, -TEXCOORD_LIMIT, TEXCOORD_LIMIT) * size;
-    if (mode == std::uint32_t(scenes::Wrap::clamp_to_edge)) return std::clamp<std::int64_t>(place, 0, size - 1);
+    const std::int64_t place =
+        texel + std::clamp<std::int64_t>(period, -TEXCOORD_LIMIT, TEXCOORD_LIMIT) * size;
+    if (mode == std::uint32_t(scenes::Wrap::clamp_to_edge))
+        return std::clamp<std::int64_t>(place, 0, size - 1);
     const std::int64_t twice = ((place % (2 * size)) + 2 * size) % (2 * size);
-    if (mode == std::uint32_t(scenes::Wrap::mirrored_repeat)) return twice < size ? twice : 2 * size - 1 - twice;
+    if (mode == std::uint32_t(scenes::Wrap::mirrored_repeat))
+        return twice < size ? twice : 2 * size - 1 - twice;
     return twice % size;
 }
 
@@ -52,7 +56,8 @@ struct Range {
 };
 
 /// The whole steps [i, i + 1] * side that a quantity touches over some corners.
-Range steps_touched(const std::vector<Wide3>& corners, const std::array<std::int64_t, 3>& values, std::int64_t side) {
+Range steps_touched(const std::vector<Wide3>& corners, const std::array<std::int64_t, 3>& values,
+                    std::int64_t side) {
     Range range{INT64_MAX, INT64_MIN};
     for (const Wide3& p : corners) {
         const Int128 numerator = p.x * values[0] + p.y * values[1] + p.z * values[2];
@@ -69,18 +74,23 @@ ExactMask::ExactMask(const std::array<glm::i64vec3, 3>& positions, const std::ar
                      const std::array<std::uint32_t, 3>& colors, const interop::SurfaceMaterial& material,
                      std::span<const std::uint32_t> texels)
     : positions_(positions), material_(material), texels_(texels) {
-    for (std::size_t i = 0; i < 3; ++i) alphas_[i] = colors[i] >> 24;
+    for (std::size_t i = 0; i < 3; ++i)
+        alphas_[i] = colors[i] >> 24;
     const glm::dvec2 size(std::max(material.width, 1U), std::max(material.height, 1U));
-    const glm::dvec2 period = glm::floor(glm::dvec2(glm::min(glm::min(texcoords[0], texcoords[1]), texcoords[2])));
+    const glm::dvec2 period =
+        glm::floor(glm::dvec2(glm::min(glm::min(texcoords[0], texcoords[1]), texcoords[2])));
     const glm::dvec2 span =
-        (glm::dvec2(glm::max(glm::max(texcoords[0], texcoords[1]), texcoords[2])) - period) * size * double(TEXEL_UNITS);
+        (glm::dvec2(glm::max(glm::max(texcoords[0], texcoords[1]), texcoords[2])) - period) * size *
+        double(TEXEL_UNITS);
     double units = TEXEL_UNITS;
-    for (double most = std::max(span.x, span.y); most > TEXEL_COORDINATE_LIMIT; most *= 0.5) units *= 0.5;
+    for (double most = std::max(span.x, span.y); most > TEXEL_COORDINATE_LIMIT; most *= 0.5)
+        units *= 0.5;
     texel_side_ = std::int64_t(units);
     period_ = glm::i64vec2(period);
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec2 exact = (glm::dvec2(texcoords[i]) - period) * (size * units);
-        texel_coordinates_[i] = {std::int64_t(std::nearbyint(exact.x)), std::int64_t(std::nearbyint(exact.y))};
+        texel_coordinates_[i] = {std::int64_t(std::nearbyint(exact.x)),
+                                 std::int64_t(std::nearbyint(exact.y))};
     }
 }
 
@@ -96,12 +106,15 @@ std::int64_t ExactMask::alpha_at(std::int64_t column, std::int64_t row) const {
 bool ExactMask::touches(const glm::i64vec3& low, std::int64_t side) const {
     std::vector<Line> lines = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int axis = 0; axis < 3; ++axis) {
-        const std::array<std::int64_t, 3> values = {positions_[0][axis], positions_[1][axis], positions_[2][axis]};
+        const std::array<std::int64_t, 3> values = {positions_[0][axis], positions_[1][axis],
+                                                    positions_[2][axis]};
         lines.push_back(at_least(values, low[axis]));
         lines.push_back(at_most(values, low[axis] + side));
     }
-    const std::array<std::int64_t, 3> u = {texel_coordinates_[0].x, texel_coordinates_[1].x, texel_coordinates_[2].x};
-    const std::array<std::int64_t, 3> v = {texel_coordinates_[0].y, texel_coordinates_[1].y, texel_coordinates_[2].y};
+    const std::array<std::int64_t, 3> u = {texel_coordinates_[0].x, texel_coordinates_[1].x,
+                                           texel_coordinates_[2].x};
+    const std::array<std::int64_t, 3> v = {texel_coordinates_[0].y, texel_coordinates_[1].y,
+                                           texel_coordinates_[2].y};
     const std::vector<Wide3> corners = corners_of(lines);
     if (corners.empty()) return false;
     const Range columns = steps_touched(corners, u, texel_side_);

@@ -10,13 +10,14 @@
 
 namespace cairn::voxelizer {
 
-/// A triangle that an alpha mask cuts: the part of it inside a closed voxel is surface where it touches a closed texel
-/// square whose alpha passes the cutoff.
+/// A triangle that an alpha mask cuts: the part of it inside a closed voxel is surface where it touches a
+/// closed texel square whose alpha passes the cutoff.
 ///
-/// This is the definition, for the few triangles that shaders leave to the CPU and for the reference; the shaders'
-/// own way is shaders/voxelize/alpha_mask.glsl. A point of the triangle is its three weights. Sides of the triangle, of
-/// the voxel and of a texel, and the cutoff, are each a line that is linear and homogeneous in the weights, with whole
-/// coefficients. They share a point exactly when one of the crossings of two of them lies on the right side of all.
+/// This is the definition, for the few triangles that shaders leave to the CPU and for the reference; the
+/// shaders' own way is shaders/voxelize/alpha_mask.glsl. A point of the triangle is its three weights. Sides
+/// of the triangle, of the voxel and of a texel, and the cutoff, are each a line that is linear and
+/// homogeneous in the weights, with whole coefficients. They share a point exactly when one of the crossings
+/// of two of them lies on the right side of all.
 class ExactMask {
 public:
     /// @param positions  lattice units, within +-2^40

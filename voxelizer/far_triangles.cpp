@@ -1,4 +1,5 @@
-// The row spans of shaders/voxelize/exact_triangle.glsl, whose comments tell the method; only the integers are wider.
+// The row spans of shaders/voxelize/exact_triangle.glsl, whose comments tell the method; only the integers
+// are wider.
 #include "voxelizer/far_triangles.h"
 
 #include <algorithm>
@@ -103,7 +104,8 @@ private:
             divisor = -divisor;
         }
         if (lower) {
-            span.first = std::int64_t(std::max<Int128>(span.first, ceil_divide(numerator, divisor * side_) - 1));
+            span.first =
+                std::int64_t(std::max<Int128>(span.first, ceil_divide(numerator, divisor * side_) - 1));
         } else {
             span.last = std::int64_t(std::min<Int128>(span.last, floor_divide(numerator, divisor * side_)));
         }
@@ -119,7 +121,8 @@ private:
 
 }  // namespace
 
-void mark_far_triangles(std::span<const FarTriangle> triangles, std::span<const interop::SurfaceMaterial> materials,
+void mark_far_triangles(std::span<const FarTriangle> triangles,
+                        std::span<const interop::SurfaceMaterial> materials,
                         std::span<const std::uint32_t> texels, const Region& region, BitGrid& bits) {
     const std::int64_t side = region.voxel_side();
     for (const FarTriangle& triangle : triangles) {
@@ -135,7 +138,8 @@ void mark_far_triangles(std::span<const FarTriangle> triangles, std::span<const 
                 const Span span = rows.row_span(y, z);
                 for (std::int64_t x = std::max(span.first, low.x); x <= std::min(span.last, high.x); ++x) {
                     const glm::i64vec3 voxel(x, y, z);
-                    if (!masked || mask.touches(voxel * side, side)) bits.set(glm::ivec3(voxel) - region.origin);
+                    if (!masked || mask.touches(voxel * side, side))
+                        bits.set(glm::ivec3(voxel) - region.origin);
                 }
             }
         });

@@ -8,9 +8,11 @@
 
 namespace cairn::voxelizer {
 
-/// Marks the triangles that pass the range of the shaders' arithmetic: the same row spans, in 128-bit integers.
+/// Marks the triangles that pass the range of the shaders' arithmetic: the same row spans, in 128-bit
+/// integers.
 /// @param bits  of the region; marks are added.
-void mark_far_triangles(std::span<const FarTriangle> triangles, std::span<const interop::SurfaceMaterial> materials,
+void mark_far_triangles(std::span<const FarTriangle> triangles,
+                        std::span<const interop::SurfaceMaterial> materials,
                         std::span<const std::uint32_t> texels, const Region& region, BitGrid& bits);
 
 }  // namespace cairn::voxelizer

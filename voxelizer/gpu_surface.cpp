@@ -36,8 +36,6 @@ GpuSurface upload(const Surface& surface) {
     out.texels = upload_array(surface.texels, "surface texels", limit);
     out.has_color = surface.has_color;
     out.has_mask = surface.has_mask;
-    out.host_materials = surface.materials;
-    if (surface.has_mask && !surface.far_triangles.empty()) out.host_texels = surface.texels;
     return out;
 }
 

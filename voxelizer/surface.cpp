@@ -32,7 +32,8 @@ float rounded_texcoord(float coordinate) {
     return float(std::round(limited * TEXCOORD_UNITS) / TEXCOORD_UNITS);
 }
 
-/// Octahedral map (Cigolle et al. 2014). Straight up would be 0, which means "none": it leans by the least step.
+/// Octahedral map (Cigolle et al. 2014). Straight up would be 0, which means "none": it leans by the least
+/// step.
 std::uint32_t packed_normal(const glm::dvec3& normal) {
     const double sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
     if (!(sum > 0.0) || !std::isfinite(sum)) return 0;
@@ -41,7 +42,9 @@ std::uint32_t packed_normal(const glm::dvec3& normal) {
         const glm::dvec2 folded = 1.0 - glm::dvec2(std::abs(e.y), std::abs(e.x));
         e = {e.x >= 0.0 ? folded.x : -folded.x, e.y >= 0.0 ? folded.y : -folded.y};
     }
-    const auto snorm = [](double value) { return std::uint32_t(std::uint16_t(std::int16_t(std::lround(value * 32767.0)))); };
+    const auto snorm = [](double value) {
+        return std::uint32_t(std::uint16_t(std::int16_t(std::lround(value * 32767.0))));
+    };
     const std::uint32_t packed = snorm(e.x) | snorm(e.y) << 16;
     return packed != 0 ? packed : 1;
 }
@@ -115,10 +118,11 @@ private:
             part_.mesh.triangles.push_back(
                 {{number(vertices[0]), number(vertices[1]), number(vertices[2]), material}});
         } else {
-            part_.far_triangles.push_back({{a, b, c},
-                                           {texcoord(vertices[0]), texcoord(vertices[1]), texcoord(vertices[2])},
-                                           {color(vertices[0]), color(vertices[1]), color(vertices[2])},
-                                           material});
+            part_.far_triangles.push_back(
+                {{a, b, c},
+                 {texcoord(vertices[0]), texcoord(vertices[1]), texcoord(vertices[2])},
+                 {color(vertices[0]), color(vertices[1]), color(vertices[2])},
+                 material});
         }
     }
 
@@ -162,8 +166,8 @@ private:
     Part part_;
 };
 
-/// Appends triangles to the last chunk, and starts new ones as they fill up. A chunk holds only vertices that its own
-/// triangles use, at most three each, so that its buffers stay small whatever the meshes share.
+/// Appends triangles to the last chunk, and starts new ones as they fill up. A chunk holds only vertices that
+/// its own triangles use, at most three each, so that its buffers stay small whatever the meshes share.
 void append(Surface& surface, const SurfaceChunk& part) {
     std::vector<std::int32_t> numbers;
     for (std::size_t first = 0; first < part.triangles.size();) {

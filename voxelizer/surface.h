@@ -39,10 +39,11 @@ struct Surface {
     std::vector<SurfaceChunk> chunks;
     std::vector<FarTriangle> far_triangles;
     std::vector<interop::SurfaceMaterial> materials;  ///< at least one
-    std::vector<std::uint32_t> texels;                ///< RGBA8 of the base-colour images that are used
+    std::vector<std::uint32_t> texels;  ///< RGBA8 of the images that are used, and counts of masks
     std::uint64_t triangle_count = 0;
     bool has_color = false;  ///< any base colour other than opaque white: factor, texture or vertex colour
-    bool has_mask = false;   ///< any triangle that its mask cuts: those wholly shown or hidden are told apart here
+    bool has_mask =
+        false;  ///< any triangle that its mask cuts: those wholly shown or hidden are told apart here
 };
 
 struct SurfaceOptions {
@@ -66,8 +67,6 @@ struct GpuSurface {
     std::vector<FarTriangle> far_triangles;
     gl::Buffer materials;
     gl::Buffer texels;
-    std::vector<interop::SurfaceMaterial> host_materials;
-    std::vector<std::uint32_t> host_texels;  ///< only if far triangles may need them
     bool has_color = false;
     bool has_mask = false;
 

@@ -17,8 +17,8 @@ enum class Shown : std::uint8_t { whole, cut, nothing };
 
 /// The materials of a snapshot as the shaders read them, with the texels they use.
 ///
-/// Material 0 is white and opaque; each material of the scene follows; then a twin without its mask for each masked
-/// one, which triangles take that are wholly shown.
+/// Material 0 is white and opaque; each material of the scene follows; then a twin without its mask for each
+/// masked one, which triangles take that are wholly shown.
 class SurfaceMaterials {
 public:
     /// @param all_textures  upload every base-colour image in use, not only those of masks.
@@ -45,6 +45,11 @@ private:
 
     void add_material(const scenes::Scene& scene, const scenes::Material& material, bool textured);
     [[nodiscard]] std::uint32_t place_image(const scenes::Image& image, int index);
+    void add_twin(std::size_t scene_material);
+    /// Counts the texels that pass, from the top left corner of the image (SurfaceMaterial::passing_offset).
+    [[nodiscard]] std::uint32_t add_passing_counts(const interop::SurfaceMaterial& material);
+    /// Room for so many more numbers. @throws Error
+    std::uint32_t grow_texels(std::size_t count);
 
     std::vector<std::int64_t> image_offsets_;
     std::vector<Mask> masks_;  ///< one a material of the scene

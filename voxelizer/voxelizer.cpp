@@ -19,22 +19,32 @@ namespace {
 using Subset = std::optional<std::span<const std::uint32_t>>;
 
 std::size_t bit_bytes(const glm::ivec3& size) {
-    return std::size_t((size.x + 31) / 32) * std::size_t(size.y) * std::size_t(size.z) * sizeof(std::uint32_t);
+    return std::size_t((size.x + 31) / 32) * std::size_t(size.y) * std::size_t(size.z) *
+           sizeof(std::uint32_t);
 }
 
 void check_region(const Region& region) {
-    if (region.level < 0 || region.level > LATTICE_BITS || glm::any(glm::lessThan(region.size, glm::ivec3(1)))) {
-        throw Error(Fault::usage, "region", fmt::format("level {} and size {} x {} x {} are out of range", region.level,
-                                                        region.size.x, region.size.y, region.size.z));
+    if (region.level < 0 || region.level > LATTICE_BITS ||
+        glm::any(glm::lessThan(region.size, glm::ivec3(1)))) {
+        throw Error(Fault::usage, "region",
+                    fmt::format("level {} and size {} x {} x {} are out of range", region.level,
+                                region.size.x, region.size.y, region.size.z));
+    }
+    if (glm::any(glm::greaterThan(region.size, glm::ivec3(VOXEL_REGION_SIDE)))) {
+        throw Error(Fault::usage, "region",
+                    fmt::format("{} x {} x {} voxels are too many along one axis", region.size.x,
+                                region.size.y, region.size.z),
+                    fmt::format("cut it in parts of at most {}", VOXEL_REGION_SIDE));
     }
     const std::size_t limit = gl::query_limits().shader_storage_bytes;
     const double bytes = std::ceil(region.size.x / 32.0) * 4.0 * region.size.y * region.size.z;
     if (bytes <= double(limit)) return;
     const int side = int(std::cbrt(double(limit) * 8.0)) / 32 * 32;
-    throw Error(Fault::memory, "voxels",
-                fmt::format("{} x {} x {} take {:.0f} MiB, more than a shader of this driver can see ({} MiB)",
-                            region.size.x, region.size.y, region.size.z, bytes / 0x1p20, limit >> 20),
-                fmt::format("{0} x {0} x {0} would fit", side));
+    throw Error(
+        Fault::memory, "voxels",
+        fmt::format("{} x {} x {} take {:.0f} MiB, more than a shader of this driver can see ({} MiB)",
+                    region.size.x, region.size.y, region.size.z, bytes / 0x1p20, limit >> 20),
+        fmt::format("{0} x {0} x {0} would fit", side));
 }
 
 /// The part of a subset that lies in one chunk, by the chunk's own numbers.
@@ -51,51 +61,39 @@ std::vector<std::uint32_t> subset_in_chunk(std::span<const std::uint32_t> subset
 Voxelizer::Voxelizer(const gl::ShaderSource& shaders)
     : shaders_(shaders),
       mark_small_(gl::build_compute(shaders, "voxelize/mark_small.comp.glsl")),
-      mark_large_(gl::build_compute(shaders, "voxelize/mark_large.comp.glsl", {{"MASKED", "0"}})),
+      mark_large_(gl::build_compute(shaders, "voxelize/mark_large.comp.glsl")),
       halve_(gl::build_compute(shaders, "voxelize/halve.comp.glsl")),
-      queue_(VOXEL_QUEUE_COUNT * (1 + std::size_t(VOXEL_BATCH_TRIANGLES)) * sizeof(std::uint32_t), "voxel queues") {}
+      queue_(VOXEL_QUEUE_COUNT * (1 + std::size_t(VOXEL_BATCH_TRIANGLES)) * sizeof(std::uint32_t),
+             "voxel queues") {}
 
-const gl::Program& Voxelizer::mark_masked() {
-    if (!mark_masked_) {
-        mark_masked_ = gl::build_compute(shaders_, "voxelize/mark_large.comp.glsl", {{"MASKED", "1"}});
-    }
-    return *mark_masked_;
-}
-
-void Voxelizer::set_region(const gl::Program& program) const {
-    program.set("region_origin", region_.origin);
-    program.set("region_size", region_.size);
-    program.set("voxel_shift", LATTICE_BITS - region_.level);
-}
-
-/// Every queued triangle gets as many workgroups as its queue's longest may need; a dispatch is kept to a size that
-/// takes a fraction of a second, because some systems stop a driver that is busy for longer.
-void Voxelizer::mark_queued(unsigned queue, unsigned count) {
-    constexpr unsigned rows_a_thread = 64;
+/// Every queued triangle gets as many workgroups as its queue's longest may need; a dispatch is kept to a
+/// size that takes a fraction of a second, because some systems stop a driver that is busy for longer.
+void Voxelizer::mark_queued(const Region& region, unsigned queue, unsigned count) {
     constexpr unsigned groups_at_once = 1U << 20;
-    const std::uint64_t region_rows = std::uint64_t(region_.size.y) * std::uint64_t(region_.size.z);
-    const bool huge = queue == VOXEL_QUEUE_HUGE || queue == VOXEL_QUEUE_MASKED_HUGE;
-    const std::uint64_t most_rows = huge ? region_rows : VOXEL_LARGE_ROWS;
-    const unsigned slices = unsigned(std::clamp<std::uint64_t>(most_rows / (rows_a_thread * VOXEL_GROUP), 1, 65535));
+    const unsigned region_rows = unsigned(region.size.y) * unsigned(region.size.z);
+    const unsigned most_rows = queue == VOXEL_QUEUE_HUGE ? region_rows : VOXEL_LARGE_ROWS;
+    // A thread's loops over rows and words stay far from the limit that VOXEL_REGION_SIDE tells of.
+    const unsigned rows_a_thread = std::clamp(2 * VOXEL_REGION_SIDE / (region.size.x / 32 + 1), 1, 64);
+    const unsigned rows_a_group = rows_a_thread * VOXEL_GROUP;
+    const unsigned slices = std::clamp((most_rows + rows_a_group - 1) / rows_a_group, 1U, 65535U);
     const unsigned triangles_at_once = std::clamp(groups_at_once / slices, 1U, 65535U);
-    const bool masked = queue == VOXEL_QUEUE_MASKED_LARGE || queue == VOXEL_QUEUE_MASKED_HUGE;
-    const gl::Program& program = masked ? mark_masked() : mark_large_;
-    set_region(program);
-    program.set("queue", queue);
-    program.set("slice_count", slices);
-    program.use();
+    set_region(mark_large_, region);
+    mark_large_.set("queue", queue);
+    mark_large_.set("slice_count", slices);
+    mark_large_.use();
     for (unsigned first = 0; first < count; first += triangles_at_once) {
-        program.set("first", first);
+        mark_large_.set("first", first);
         glDispatchCompute(slices, std::min(triangles_at_once, count - first), 1);
         glFlush();
     }
 }
 
-void Voxelizer::mark_chunk(std::size_t count, bool has_subset) {
+std::vector<MaskCandidate> Voxelizer::mark_chunk(const Region& region, std::size_t count, bool has_subset) {
+    std::vector<MaskCandidate> undecided;
     for (std::size_t first = 0; first < count; first += VOXEL_BATCH_TRIANGLES) {
         const std::size_t batch = std::min<std::size_t>(count - first, VOXEL_BATCH_TRIANGLES);
         queue_.fill(0, VOXEL_QUEUE_COUNT * sizeof(std::uint32_t), 0);
-        set_region(mark_small_);
+        set_region(mark_small_, region);
         mark_small_.set("first", unsigned(first));
         mark_small_.set("count", unsigned(batch));
         mark_small_.set("has_subset", int(has_subset));
@@ -103,16 +101,23 @@ void Voxelizer::mark_chunk(std::size_t count, bool has_subset) {
         gl::dispatch_threads(batch, VOXEL_GROUP);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
         const auto counts = queue_.read_all<std::uint32_t>(VOXEL_QUEUE_COUNT);
-        for (unsigned queue = 0; queue < VOXEL_QUEUE_COUNT; ++queue) {
-            if (counts[queue] > 0) mark_queued(queue, counts[queue]);
+        for (const unsigned queue : {VOXEL_QUEUE_LARGE, VOXEL_QUEUE_HUGE}) {
+            if (counts[queue] > 0) mark_queued(region, queue, counts[queue]);
+        }
+        for (const unsigned queue : {VOXEL_QUEUE_MASKED_SMALL, VOXEL_QUEUE_MASKED_LARGE}) {
+            if (counts[queue] == 0) continue;
+            if (!masked_) masked_.emplace(shaders_);
+            glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+            const std::vector<MaskCandidate> more = masked_->mark(region, queue, counts[queue]);
+            undecided.insert(undecided.end(), more.begin(), more.end());
         }
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     }
+    return undecided;
 }
 
 void Voxelizer::mark(const GpuSurface& surface, const Region& region, Subset subset) {
     check_region(region);
-    region_ = region;
     const std::size_t bytes = bit_bytes(region.size);
     if (bits_.size_bytes() != bytes) bits_ = gl::Buffer(bytes, "voxel bits");
     std::vector<gl::Buffer> subsets;
@@ -129,20 +134,35 @@ void Voxelizer::mark(const GpuSurface& surface, const Region& region, Subset sub
     bits_.fill(0);
     bits_.bind_storage(SSBO_VOXEL_BITS);
     queue_.bind_storage(SSBO_VOXEL_QUEUE);
+    std::vector<glm::ivec3> voxels;
     for (std::size_t chunk = 0; chunk < surface.chunks.size(); ++chunk) {
         surface.bind(chunk);
-        (subset ? subsets[chunk] : queue_).bind_storage(SSBO_VOXEL_SUBSET);
-        mark_chunk(counts[chunk], subset.has_value());
+        if (subset) subsets[chunk].bind_storage(SSBO_VOXEL_SUBSET);
+        const std::vector<MaskCandidate> undecided = mark_chunk(region, counts[chunk], subset.has_value());
+        if (undecided.empty()) continue;
+        const std::vector<glm::ivec3> found = decide_on_cpu(undecided, surface, chunk, region);
+        voxels.insert(voxels.end(), found.begin(), found.end());
     }
+    if (!voxels.empty() || !surface.far_triangles.empty()) mark_on_cpu(surface, region, voxels);
     glFinish();
-    last_milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    if (surface.far_triangles.empty()) return;
-    BitGrid bits = read_bits(bits_, region.size);
-    mark_far_triangles(surface.far_triangles, surface.host_materials, surface.host_texels, region, bits);
-    bits_.write(0, bits.words.data(), bytes);
+    last_milliseconds_ =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-BitGrid Voxelizer::read_bits(const gl::Buffer& bits, const glm::ivec3& size) const {
+void Voxelizer::mark_on_cpu(const GpuSurface& surface, const Region& region,
+                            const std::vector<glm::ivec3>& voxels) {
+    BitGrid bits = read_bits(bits_, region.size);
+    for (const glm::ivec3& voxel : voxels)
+        bits.set(voxel - region.origin);
+    const auto materials = surface.materials.read_all<interop::SurfaceMaterial>(
+        surface.materials.size_bytes() / sizeof(interop::SurfaceMaterial));
+    const auto texels =
+        surface.texels.read_all<std::uint32_t>(surface.texels.size_bytes() / sizeof(std::uint32_t));
+    mark_far_triangles(surface.far_triangles, materials, texels, region, bits);
+    bits_.write(0, bits.words.data(), bits.words.size() * sizeof(std::uint32_t));
+}
+
+BitGrid Voxelizer::read_bits(const gl::Buffer& bits, const glm::ivec3& size) {
     BitGrid out(size);
     bits.read(0, out.words.data(), out.words.size() * sizeof(std::uint32_t));
     return out;

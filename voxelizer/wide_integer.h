@@ -22,7 +22,9 @@ struct Wide3 {
     return -floor_divide(-numerator, positive_divisor);
 }
 
-[[nodiscard]] inline Int128 dot(const Wide3& a, const Wide3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+[[nodiscard]] inline Int128 dot(const Wide3& a, const Wide3& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
 [[nodiscard]] inline Wide3 cross(const Wide3& a, const Wide3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

@@ -9,8 +9,8 @@ namespace {
 
 /// Magic, version, length of the dictionary, dictionary; padded so that the data starts at a multiple of 64.
 std::string header(const glm::ivec3& size) {
-    std::string dictionary = fmt::format("{{'descr': '|u1', 'fortran_order': False, 'shape': ({}, {}, {}), }}", size.x,
-                                         size.y, size.z);
+    std::string dictionary = fmt::format(
+        "{{'descr': '|u1', 'fortran_order': False, 'shape': ({}, {}, {}), }}", size.x, size.y, size.z);
     constexpr std::size_t prefix = 10;
     const std::size_t total = (prefix + dictionary.size() + 1 + 63) / 64 * 64;
     dictionary.resize(total - prefix - 1, ' ');
@@ -37,7 +37,8 @@ void write_npy(const BitGrid& bits, const std::filesystem::path& path) {
             for (int z = 0; z < size.z; ++z) {
                 const std::uint32_t word = bits.words[bits.word_index(x, y, z)];
                 std::uint8_t* out = &slabs[std::size_t(y) * std::size_t(size.z) + std::size_t(z)];
-                for (int i = 0; i < count; ++i, out += slab_bytes) *out = std::uint8_t(word >> i & 1U);
+                for (int i = 0; i < count; ++i, out += slab_bytes)
+                    *out = std::uint8_t(word >> i & 1U);
             }
         }
         file.write(slabs.data(), slab_bytes * std::size_t(count));

@@ -7,12 +7,13 @@
 #define SSBO_SURFACE_TRIANGLES 1   // SurfaceTriangle
 #define SSBO_SURFACE_ATTRIBUTES 2  // SurfaceAttributes a vertex
 #define SSBO_SURFACE_MATERIALS 3   // SurfaceMaterial
-#define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each
+#define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each; then the counts of masks
 
 // The voxelizer's own.
 #define SSBO_VOXEL_BITS 5    // BitGrid::words
 #define SSBO_VOXEL_QUEUE 6   // VOXEL_QUEUE_* counters, then the queues
 #define SSBO_VOXEL_SUBSET 7  // triangles to mark, when not all
+#define SSBO_VOXEL_CANDIDATES 7  // voxels that a mask may cut away (shaders/voxelize/candidates.glsl)
 #define SSBO_HALVE_FINE 0    // BitGrid::words of a level, and of the next coarser one (pass that reads no surface)
 #define SSBO_HALVE_COARSE 1
 

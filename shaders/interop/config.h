@@ -11,6 +11,7 @@
 
 // The voxelizer marks so many triangles in one pass: bounds its queues and the time of a dispatch.
 #define VOXEL_BATCH_TRIANGLES 262144
+#define VOXEL_CANDIDATES 1048576  // voxels of masked triangles at a time
 // Triangles of at most so many rows are marked by the thread that meets them; others wait in a queue for a workgroup,
 // or, past VOXEL_LARGE_ROWS, for many.
 #define VOXEL_SMALL_ROWS 64
@@ -18,9 +19,17 @@
 #define VOXEL_GROUP 64
 #define VOXEL_QUEUE_LARGE 0
 #define VOXEL_QUEUE_HUGE 1
-#define VOXEL_QUEUE_MASKED_LARGE 2  // those that a mask cuts
-#define VOXEL_QUEUE_MASKED_HUGE 3
+#define VOXEL_QUEUE_MASKED_SMALL 2  // those that a mask cuts, with a box of at most so many voxels
+#define VOXEL_MASKED_SMALL_BOX 4096
+#define VOXEL_QUEUE_MASKED_LARGE 3
 #define VOXEL_QUEUE_COUNT 4
+// llvmpipe ends every loop of an invocation once they have turned 65535 times in all, and says nothing. Two limits keep
+// well under it: voxels along an axis of a region, and steps to decide about one voxel of a masked triangle.
+#define VOXEL_REGION_SIDE 16384
+#define MASK_STEPS 1024
+#define MASK_EMPTY 0
+#define MASK_SURFACE 1
+#define MASK_UNDECIDED 2      // left to the CPU: too many steps, or vertex alphas under 1
 
 // Alpha masks (shaders/voxelize/alpha_mask.glsl, voxelizer/exact_mask.h). Texture coordinates are rounded to
 // 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a texel when a mask is read.
@@ -42,8 +51,9 @@
 // Voxels across the root cube stay below this, because a ray state packs three coordinates in 63 bits.
 #define MAX_RESOLUTION_BITS 21
 
-// A brick voxel is opaque to 1 - 1/256 when its coverage is full, so that a ray that only cuts its corner is not.
-#define FULL_COVERAGE_TRANSMITTANCE (1.0 / 256.0)
+// A mean normal that looks away from the viewer by less than this (cosine) belongs to a silhouette, not to a back side.
+#define SILHOUETTE_BEND 0.35
+
 // A ray stops when less light than this is left: half a step of an 8-bit image.
 #define OPAQUE_TRANSMITTANCE (1.0 / 512.0)
 

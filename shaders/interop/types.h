@@ -32,8 +32,9 @@ struct SurfaceMaterial {
     uint height;
     uint flags;           // MATERIAL_*
     float alpha_cutoff;
-    uint alpha_threshold;  // visible: texel alpha * vertex alpha * 256 >= this, both alphas 0 to 255
-    float padding1;
+    uint alpha_threshold;  // passes: texel alpha * vertex alpha * 256 >= this, both alphas 0 to 255
+    uint passing_offset;   // masked and textured: first number in SSBO_SURFACE_TEXELS of (width + 1) * (height + 1):
+                           // number (x, y) counts the passing texels left of x and above y, for vertex alpha 255
     float padding2;
 };
 

@@ -1,10 +1,12 @@
 // Whether the part of a masked triangle inside a closed voxel touches a closed texel square that passes the cutoff:
 // exact on every driver. The definition in few lines is voxelizer/exact_mask.h.
 //
-//     bool mask_touches(uint triangle, ivec3 voxel, int shift)        voxel of side 2^shift that the triangle meets,
-//                                                                     numbered in the root cube
-//     MaskedTriangle masked_triangle(uint triangle);                  the same in two steps, for many voxels
-//     bool mask_touches(MaskedTriangle m, ivec3 voxel, int shift)
+//     int mask_decide(MaskedTriangle m, ivec3 voxel, int shift)     MASK_SURFACE, MASK_EMPTY, or MASK_UNDECIDED: of what
+//                                                                   is left to voxelizer/exact_mask.h
+//     MaskedTriangle masked_triangle(uint triangle)
+//     bool mask_touches(uint triangle, ivec3 voxel, int shift)      the same in one step, where undecided means yes
+//
+// The voxel has side 2^shift, is numbered in the root cube, and meets the triangle.
 //
 // A point of the triangle is its three weights. Sides of the voxel, of a texel, and of the triangle are lines that are
 // linear and homogeneous in the weights, with whole coefficients under 2^25.6. The part inside the voxel is a polygon
@@ -13,10 +15,11 @@
 // the bounding box, at most 9 * 2^48. The side of a corner is a sum of three products of 77 bits: the corner is cut in
 // two halves, each sum is exact in double, and the two are compared.
 // Clipping: Sutherland and Hodgman 1974, closed: what only touches is left as a segment or a point.
+//
+// Drivers inline every call, so each step is written once, inside loops, and what it works on is private memory.
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_attributes.glsl"
 
-#define MASK_MAX_CORNERS 14  // three, and one more for each line: six of the voxel, four of a texel, the cutoff
 const double MASK_SPLIT = 67108864.0LF;  // 2^26
 
 struct MaskedTriangle {
@@ -26,12 +29,6 @@ struct MaskedTriangle {
     ivec2 period;         // the textures taken off
     int texel_side;
     SurfaceMaterial material;
-};
-
-struct MaskPolygon {
-    int count;
-    dvec3 corners[MASK_MAX_CORNERS];
-    dvec3 lines[MASK_MAX_CORNERS];   // from this corner to the next
 };
 
 MaskedTriangle masked_triangle(uint triangle) {
@@ -62,8 +59,30 @@ MaskedTriangle masked_triangle(uint triangle) {
     return m;
 }
 
+// Lines: sides of the triangle (0 to 2), of the voxel (3 to 8), of some rows of texels (9 and 10).
+#define MASK_VOXEL_LINES 3
+#define MASK_ROW_LINES 9
+#define MASK_LINE_COUNT 11
+ivec3 mask_lines[MASK_LINE_COUNT];
+
+// Three polygons, each a list of corners: the two lines that cross there (4 bits each) and the line from there on.
+#define MASK_MAX_CORNERS 11  // three, and one more for each line that cuts
+uint mask_corners[3 * MASK_MAX_CORNERS];
+
+struct MaskPolygon {
+    int place;  // 0, 1 or 2
+    int count;  // 0 = empty
+};
+
+dvec3 mask_corner(uint corner) {
+    const dvec3 a = dvec3(mask_lines[corner & 15u]), b = dvec3(mask_lines[corner >> 4 & 15u]);
+    const dvec3 p = dvec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+    return p.x + p.y + p.z < 0.0LF ? -p : p;
+}
+
 // The sign of a line at a corner.
-int mask_side(dvec3 line, dvec3 corner) {
+int mask_side(ivec3 whole_line, dvec3 corner) {
+    const dvec3 line = dvec3(whole_line);
     const dvec3 high = floor(corner / MASK_SPLIT);
     const dvec3 low = corner - high * MASK_SPLIT;
     const double a = (line.x * high.x + line.y * high.y + line.z * high.z) * MASK_SPLIT;
@@ -71,176 +90,172 @@ int mask_side(dvec3 line, dvec3 corner) {
     return int(a > b) - int(a < b);
 }
 
-dvec3 mask_crossing(dvec3 a, dvec3 b) {
-    const dvec3 p = dvec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-    return p.x + p.y + p.z < 0.0LF ? -p : p;
-}
-
-// Cuts away what is on the negative side of a line.
-void mask_clip(inout MaskPolygon polygon, ivec3 whole_line) {
-    if (all(greaterThanEqual(whole_line, ivec3(0)))) return;
-    const dvec3 line = dvec3(whole_line);
-    if (polygon.count == 0 || all(lessThan(whole_line, ivec3(0)))) {
-        polygon.count = 0;
-        return;
-    }
-    MaskPolygon kept;
-    kept.count = 0;
-    const int first_side = mask_side(line, polygon.corners[0]);
-    int side = first_side;
-    for (int i = 0; i < polygon.count; ++i) {
-        const int next = i + 1 < polygon.count ? mask_side(line, polygon.corners[min(i + 1, MASK_MAX_CORNERS - 1)])
-                                               : first_side;
-        if (side >= 0) {
-            kept.corners[kept.count] = polygon.corners[i];
-            kept.lines[kept.count++] = side == 0 && next < 0 ? line : polygon.lines[i];
+// What a line leaves of a polygon, at another place than `kept`.
+MaskPolygon mask_clip(MaskPolygon polygon, int line, int kept) {
+    const ivec3 coefficients = mask_lines[line];
+    if (all(greaterThanEqual(coefficients, ivec3(0)))) return polygon;
+    MaskPolygon result = MaskPolygon(polygon.place == kept ? (kept + 1) % 3 : 3 - kept - polygon.place, 0);
+    if (all(lessThan(coefficients, ivec3(0)))) return result;
+    const uint cut = uint(line);
+    uint corner = 0u;
+    int side = 0;
+    for (int i = 0; i <= polygon.count; ++i) {
+        const uint next = mask_corners[polygon.place * MASK_MAX_CORNERS + (i < polygon.count ? i : 0)];
+        const int next_side = mask_side(coefficients, mask_corner(next));
+        const int end = result.place * MASK_MAX_CORNERS + result.count;
+        const bool keep = i > 0 && side >= 0;
+        const bool cross = i > 0 && side * next_side < 0;
+        if (keep) mask_corners[end] = side == 0 && next_side < 0 ? (corner & 0xFFu) | cut << 8 : corner;
+        if (cross) {
+            const uint along = corner >> 8;
+            mask_corners[end + int(keep)] = along | cut << 4 | (side > 0 ? cut : along) << 8;
         }
-        if (side * next < 0) {
-            kept.corners[kept.count] = mask_crossing(polygon.lines[i], line);
-            kept.lines[kept.count++] = side > 0 ? line : polygon.lines[i];
-        }
-        side = next;
+        result.count += int(keep) + int(cross);
+        corner = next;
+        side = next_side;
     }
-    polygon = kept;
-}
-
-// The part of the triangle inside a voxel.
-MaskPolygon mask_polygon(MaskedTriangle m, ivec3 voxel, int shift) {
-    MaskPolygon polygon;
-    polygon.count = 3;
-    polygon.corners[0] = dvec3(1.0LF, 0.0LF, 0.0LF);
-    polygon.corners[1] = dvec3(0.0LF, 1.0LF, 0.0LF);
-    polygon.corners[2] = dvec3(0.0LF, 0.0LF, 1.0LF);
-    polygon.lines[0] = polygon.corners[2];
-    polygon.lines[1] = polygon.corners[0];
-    polygon.lines[2] = polygon.corners[1];
-    const ivec3 low = voxel << shift;
-    const ivec3 high = low + (1 << shift);
-    mask_clip(polygon, m.x - low.x);
-    mask_clip(polygon, high.x - m.x);
-    mask_clip(polygon, m.y - low.y);
-    mask_clip(polygon, high.y - m.y);
-    mask_clip(polygon, m.z - low.z);
-    mask_clip(polygon, high.z - m.z);
-    return polygon;
+    return result;
 }
 
 // floor and ceil of a texture coordinate at a corner, in texels.
 ivec2 mask_texel_at(dvec3 corner, ivec3 coordinate, int texel_side) {
     const double estimate = dot(corner, dvec3(coordinate)) / ((corner.x + corner.y + corner.z) * double(texel_side));
     const int nearest = int(round(estimate));
-    const int side = mask_side(dvec3(coordinate - nearest * texel_side), corner);
+    const int side = mask_side(coordinate - nearest * texel_side, corner);
     return ivec2(side < 0 ? nearest - 1 : nearest, side > 0 ? nearest + 1 : nearest);
 }
 
-// The texels that a polygon touches along one axis: first and last.
-ivec2 mask_texels(MaskPolygon polygon, ivec3 coordinate, int texel_side) {
-    ivec2 range = ivec2(2147483647, -2147483647);
+// The texels of the image that a range of texels of the plane falls on along one axis (MATERIAL_WRAP_*): one piece or
+// two; an empty piece has its end before its start.
+void mask_pieces(ivec2 range, int period, int size, uint mode, out ivec2 pieces[2]) {
+    pieces[1] = ivec2(0, -1);
+    if (mode == 2u) {
+        const int start = int(clamp(-double(period) * double(size), -1073741824.0LF, 1073741824.0LF));
+        pieces[0] = clamp(range - start, 0, size - 1);
+        return;
+    }
+    // Which repeat each end falls in, rounded down: GLSL leaves the division of negative numbers open.
+    const ivec2 repeat = ivec2(range.x >= 0 ? range.x / size : -((-1 - range.x) / size) - 1,
+                               range.y >= 0 ? range.y / size : -((-1 - range.y) / size) - 1);
+    const ivec2 place = range - repeat * size;
+    if (repeat.y - repeat.x > 1) {
+        pieces[0] = ivec2(0, size - 1);
+        return;
+    }
+    const bool split = repeat.y > repeat.x;
+    pieces[0] = ivec2(place.x, split ? size - 1 : place.y);
+    if (split) pieces[1] = ivec2(0, place.y);
+    if (mode == 1u) {
+        const bool odd = ((repeat.x + period) & 1) != 0;
+        if (odd) pieces[0] = size - 1 - pieces[0].yx;
+        else if (split) pieces[1] = size - 1 - pieces[1].yx;
+    }
+}
+
+uint mask_count_before(SurfaceMaterial material, int x, int y) {
+    return texels[material.passing_offset + uint(y) * (material.width + 1u) + uint(x)];
+}
+
+// How many texels of a rectangle pass: MASK_SURFACE all, MASK_EMPTY none, MASK_UNDECIDED some.
+int mask_some_pass(MaskedTriangle m, ivec2 columns, ivec2 rows) {
+    ivec2 x[2], y[2];
+    mask_pieces(columns, m.period.x, int(m.material.width), m.material.flags >> MATERIAL_WRAP_S_SHIFT & 3u, x);
+    mask_pieces(rows, m.period.y, int(m.material.height), m.material.flags >> MATERIAL_WRAP_T_SHIFT & 3u, y);
+    uint passing = 0u;
+    uint all = 0u;
+    for (int i = 0; i < 4; ++i) {
+        const ivec2 across = (i & 1) != 0 ? x[1] : x[0];
+        const ivec2 down = (i & 2) != 0 ? y[1] : y[0];
+        if (across.x > across.y || down.x > down.y) continue;
+        passing += mask_count_before(m.material, across.y + 1, down.y + 1) -
+                   mask_count_before(m.material, across.x, down.y + 1) -
+                   mask_count_before(m.material, across.y + 1, down.x) +
+                   mask_count_before(m.material, across.x, down.x);
+        all += uint(across.y - across.x + 1) * uint(down.y - down.x + 1);
+    }
+    return passing == 0u ? MASK_EMPTY : passing == all ? MASK_SURFACE : MASK_UNDECIDED;
+}
+
+// The lines of a voxel, the lines of the triangle's sides, and the triangle as the first polygon.
+void mask_begin(MaskedTriangle m, ivec3 voxel, int shift) {
+    const ivec3 low = voxel << shift;
+    const ivec3 high = low + (1 << shift);
+    mask_lines[0] = ivec3(1, 0, 0);
+    mask_lines[1] = ivec3(0, 1, 0);
+    mask_lines[2] = ivec3(0, 0, 1);
+    mask_lines[3] = m.x - low.x;
+    mask_lines[4] = high.x - m.x;
+    mask_lines[5] = m.y - low.y;
+    mask_lines[6] = high.y - m.y;
+    mask_lines[7] = m.z - low.z;
+    mask_lines[8] = high.z - m.z;
+    mask_corners[0] = 1u | 2u << 4 | 2u << 8;
+    mask_corners[1] = 2u | 0u << 4 | 0u << 8;
+    mask_corners[2] = 0u | 1u << 4 | 1u << 8;
+}
+
+// The texels that a polygon touches, as a rectangle around them.
+struct MaskRange {
+    ivec2 first, last;
+};
+
+MaskRange mask_range(MaskedTriangle m, MaskPolygon polygon) {
+    MaskRange range = MaskRange(ivec2(2147483647), ivec2(-2147483647));
     for (int i = 0; i < polygon.count; ++i) {
-        const ivec2 texel = mask_texel_at(polygon.corners[i], coordinate, texel_side);
-        range = ivec2(min(range.x, texel.y - 1), max(range.y, texel.x));
+        const dvec3 corner = mask_corner(mask_corners[polygon.place * MASK_MAX_CORNERS + i]);
+        const ivec2 column = mask_texel_at(corner, m.u, m.texel_side);
+        const ivec2 row = mask_texel_at(corner, m.v, m.texel_side);
+        range.first = min(range.first, ivec2(column.y, row.y) - 1);
+        range.last = max(range.last, ivec2(column.x, row.x));
     }
     return range;
 }
 
-// A texel's number in the image (MATERIAL_WRAP_*).
-int mask_wrapped(int texel, int period, int size, uint mode) {
-    if (mode == 2u) {
-        return int(clamp(double(texel) + double(period) * double(size), 0.0LF, double(size - 1)));
-    }
-    int place = texel % size;  // of negative numbers GLSL leaves it open
-    if (texel < 0) place = (size - 1) - (-(texel + 1)) % size;
-    const int repeats = (texel - place) / size + (period & 1);
-    return mode == 1u && (repeats & 1) != 0 ? size - 1 - place : place;
-}
-
-// A range of texels that holds the same ones as a longer range.
-ivec2 mask_distinct(ivec2 range, int period, int size, uint mode) {
-    if (mode != 2u) return ivec2(range.x, min(range.y, range.x + 2 * size - 1));
-    const int edge = int(clamp(-double(period) * double(size), -1073741824.0LF, 1073741824.0LF));
-    return clamp(range, ivec2(edge), ivec2(edge + size - 1));
-}
-
-ivec2 mask_distinct_columns(MaskedTriangle m, ivec2 columns) {
-    const uint mode = m.material.flags >> MATERIAL_WRAP_S_SHIFT & 3u;
-    return mask_distinct(columns, m.period.x, max(int(m.material.width), 1), mode);
-}
-ivec2 mask_distinct_rows(MaskedTriangle m, ivec2 rows) {
-    const uint mode = m.material.flags >> MATERIAL_WRAP_T_SHIFT & 3u;
-    return mask_distinct(rows, m.period.y, max(int(m.material.height), 1), mode);
-}
-
-int mask_alpha(MaskedTriangle m, ivec2 texel) {
-    if (m.material.width == 0u) return 255;
-    const int x = mask_wrapped(texel.x, m.period.x, int(m.material.width), m.material.flags >> MATERIAL_WRAP_S_SHIFT & 3u);
-    const int y = mask_wrapped(texel.y, m.period.y, int(m.material.height), m.material.flags >> MATERIAL_WRAP_T_SHIFT & 3u);
-    return int(texels[m.material.texel_offset + uint(y) * m.material.width + uint(x)] >> 24);
-}
-
-// Where the interpolated alpha passes the cutoff, as a line.
-ivec3 mask_passing_line(MaskedTriangle m, ivec2 texel) {
-    return mask_alpha(m, texel) * 256 * m.alpha - int(m.material.alpha_threshold);
-}
-
-// Whether any corner of the polygon lies where the texel passes. Exact when the polygon lies inside the texel.
-bool mask_passes(MaskPolygon polygon, ivec3 passing_line) {
-    if (all(greaterThanEqual(passing_line, ivec3(0)))) return polygon.count > 0;
-    if (all(lessThan(passing_line, ivec3(0)))) return false;
-    for (int i = 0; i < polygon.count; ++i) {
-        if (mask_side(dvec3(passing_line), polygon.corners[i]) >= 0) return true;
-    }
-    return false;
-}
-
-// Whether a polygon that lies in one row of texels touches one that passes.
-bool mask_row_touches(MaskedTriangle m, MaskPolygon strip, int row) {
-    const bool same_alpha = m.alpha.x == m.alpha.y && m.alpha.x == m.alpha.z;
-    ivec2 columns = mask_texels(strip, m.u, m.texel_side);
-    if (same_alpha) columns = mask_distinct_columns(m, columns);
-    for (int column = columns.x; column <= columns.y; ++column) {
-        const ivec3 passing_line = mask_passing_line(m, ivec2(column, row));
-        if (all(lessThan(passing_line, ivec3(0)))) continue;
-        if (same_alpha || all(greaterThanEqual(passing_line, ivec3(0)))) return true;
-        MaskPolygon inside = strip;
-        mask_clip(inside, m.u - column * m.texel_side);
-        mask_clip(inside, (column + 1) * m.texel_side - m.u);
-        if (mask_passes(inside, passing_line)) return true;
-    }
-    return false;
-}
-
-// Two cheap answers before the exact rows: a corner of the polygon lies on a texel that passes (1), no texel of its
-// bounding box passes (0); else -1.
-int mask_quick_answer(MaskedTriangle m, MaskPolygon polygon, ivec2 columns, ivec2 rows) {
-    for (int i = 0; i < polygon.count; ++i) {
-        const ivec2 texel = ivec2(mask_texel_at(polygon.corners[i], m.u, m.texel_side).x,
-                                  mask_texel_at(polygon.corners[i], m.v, m.texel_side).x);
-        if (mask_side(dvec3(mask_passing_line(m, texel)), polygon.corners[i]) >= 0) return 1;
-    }
-    for (int row = rows.x; row <= rows.y; ++row) {
-        for (int column = columns.x; column <= columns.y; ++column) {
-            if (any(greaterThanEqual(mask_passing_line(m, ivec2(column, row)), ivec3(0)))) return -1;
+// MASK_EMPTY, MASK_SURFACE or MASK_UNDECIDED. First the whole part of the triangle inside the voxel is held against the
+// rectangle of texels around it. While some pass there and some do not, it is cut in strips of 2^level rows, of which
+// those without a texel that passes are skipped; in one row or column a convex part touches all from first to last.
+int mask_decide(MaskedTriangle m, ivec3 voxel, int shift) {
+    if (m.material.width == 0u || m.alpha != ivec3(255)) return MASK_UNDECIDED;
+    mask_begin(m, voxel, shift);
+    MaskPolygon inside = MaskPolygon(0, 3);
+    ivec2 all_rows = ivec2(0), strip = ivec2(-2147483647, 2147483647);
+    int level = 0, top_level = 0;
+    for (int step = 0; step < MASK_STEPS; ++step) {
+        MaskPolygon part = inside;
+        const int last_line = step == 0 ? MASK_ROW_LINES : MASK_LINE_COUNT;
+        for (int line = step == 0 ? MASK_VOXEL_LINES : MASK_ROW_LINES; line < last_line; ++line) {
+            part = mask_clip(part, line, inside.place);
         }
+        const MaskRange range = mask_range(m, part);
+        const ivec2 columns = ivec2(range.first.x, range.last.x);
+        const ivec2 rows = ivec2(max(range.first.y, strip.x), min(range.last.y, strip.y));
+        const int some = part.count == 0 ? MASK_EMPTY : mask_some_pass(m, columns, rows);
+        if (some == MASK_SURFACE) return MASK_SURFACE;
+        if (some == MASK_EMPTY) {
+            if (step == 0) return MASK_EMPTY;
+            strip.x += 1 << level;
+            if (strip.x > all_rows.y) return MASK_EMPTY;
+            level = min(findLSB(strip.x - all_rows.x), top_level);
+        } else {
+            if (rows.x == rows.y || columns.x == columns.y) return MASK_SURFACE;
+            if (step == 0) {
+                inside = part;
+                all_rows = rows;
+                top_level = findMSB(rows.y - rows.x);
+                level = top_level;
+                strip.x = rows.x;
+            } else {
+                --level;
+            }
+        }
+        strip.y = min(strip.x + (1 << level) - 1, all_rows.y);
+        mask_lines[MASK_ROW_LINES] = m.v - strip.x * m.texel_side;
+        mask_lines[MASK_ROW_LINES + 1] = (strip.y + 1) * m.texel_side - m.v;
     }
-    return 0;
+    return MASK_UNDECIDED;
 }
 
-bool mask_touches(MaskedTriangle m, ivec3 voxel, int shift) {
-    const MaskPolygon polygon = mask_polygon(m, voxel, shift);
-    if (polygon.count == 0) return false;
-    const ivec2 columns = mask_texels(polygon, m.u, m.texel_side);
-    const ivec2 rows = mask_texels(polygon, m.v, m.texel_side);
-    const int quick = mask_quick_answer(m, polygon, mask_distinct_columns(m, columns), mask_distinct_rows(m, rows));
-    if (quick >= 0) return quick == 1;
-    for (int row = rows.x; row <= rows.y; ++row) {
-        MaskPolygon strip = polygon;
-        mask_clip(strip, m.v - row * m.texel_side);
-        mask_clip(strip, (row + 1) * m.texel_side - m.v);
-        if (strip.count > 0 && mask_row_touches(m, strip, row)) return true;
-    }
-    return false;
-}
-
+// The undecided count as surface.
 bool mask_touches(uint triangle, ivec3 voxel, int shift) {
-    return mask_touches(masked_triangle(triangle), voxel, shift);
+    return mask_decide(masked_triangle(triangle), voxel, shift) != MASK_EMPTY;
 }

@@ -21,3 +21,10 @@ void mark_span(ivec2 row, ivec2 span) {
         bits = 0xFFFFFFFFu;
     }
 }
+
+// Whether a voxel of the region is marked already; may miss what another thread marks at this moment.
+bool is_marked(ivec3 voxel) {
+    const ivec3 place = voxel - region_origin;
+    const int row_word = (place.z * region_size.y + place.y) * ((region_size.x + 31) >> 5);
+    return (voxel_bits[row_word + (place.x >> 5)] >> uint(place.x & 31) & 1u) != 0u;
+}

@@ -1,4 +1,5 @@
-// One thread is one triangle: it marks those of few rows, and leaves the others to mark_large.
+// One thread is one triangle: it marks those of few rows, and leaves the others to mark_large,
+// and those that a mask cuts to list_masked.
 #include "voxelize/bits.glsl"
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
@@ -25,11 +26,13 @@ void main() {
     if (any(greaterThan(low, high))) return;
     const ivec2 size = high.yz - low.yz + 1;
     const float rows = float(size.x) * float(size.y);
-    const bool masked = (surface_materials[corners.w].flags & (1u << MATERIAL_MASK_BIT)) != 0u;
-    if (masked || rows > VOXEL_SMALL_ROWS) {
-        const bool huge = rows > VOXEL_LARGE_ROWS;
-        enqueue(masked ? (huge ? VOXEL_QUEUE_MASKED_HUGE : VOXEL_QUEUE_MASKED_LARGE)
-                       : (huge ? VOXEL_QUEUE_HUGE : VOXEL_QUEUE_LARGE), triangle);
+    if ((surface_materials[corners.w].flags & (1u << MATERIAL_MASK_BIT)) != 0u) {
+        const bool small = rows * float(high.x - low.x + 1) <= VOXEL_MASKED_SMALL_BOX;
+        enqueue(small ? VOXEL_QUEUE_MASKED_SMALL : VOXEL_QUEUE_MASKED_LARGE, triangle);
+        return;
+    }
+    if (rows > VOXEL_SMALL_ROWS) {
+        enqueue(rows > VOXEL_LARGE_ROWS ? VOXEL_QUEUE_HUGE : VOXEL_QUEUE_LARGE, triangle);
         return;
     }
     // One loop over all rows, not two nested ones: threads side by side have about as many rows, not the same shape.
