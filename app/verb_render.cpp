@@ -143,8 +143,9 @@ renderer::View view_of(const Options& options, const scenes::Snapshot& snapshot)
     return view;
 }
 
-/// The median of a few frames whose bricks are all there.
-double converged_frame_ms(renderer::Renderer& renderer, const renderer::View& view) {
+/// The median of a few frames that find the bricks of the frame before.
+double converged_frame_ms(renderer::Renderer& renderer, const renderer::View& view, bool quiet) {
+    const Progress progress("measuring", quiet);
     std::vector<double> frames;
     double total = 0.0;
     while (frames.size() < measured_frames && total < measuring_ms) {
@@ -181,14 +182,16 @@ ExitCode run(const Options& options) {
         image = renderer.render(view, [&progress](double share) { progress.set(share); });
     }
     const renderer::FrameStatistics first = renderer.statistics();
+    report.add("first_frame_ms", first.milliseconds);
     (void)watch.lap_ms();
     write_png(image, output);
     const double write_ms = watch.lap_ms();
-    const double frame_ms = converged_frame_ms(renderer, view);
+    // Frames that nobody asked about are not worth their time.
+    if (!quiet || options.common.report.json) {
+        report.add("frame_ms", converged_frame_ms(renderer, view, quiet));
+    }
     driver.check();
 
-    report.add("first_frame_ms", first.milliseconds);
-    report.add("frame_ms", frame_ms);
     report.add("write_ms", write_ms);
     report.add("width", view.width);
     report.add("height", view.height);

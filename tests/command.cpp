@@ -42,11 +42,12 @@ Answer cairn(const std::vector<std::string>& arguments, const Surroundings& surr
     std::string line;
     if (!surroundings.folder.empty()) line += fmt::format("cd {} && ", quoted(surroundings.folder.string()));
     line += "env CAIRN_GL_DEBUG=1";
-    for (const auto& [name, value] : surroundings.environment)
-        line += " " + quoted(name + "=" + value);
-    line += " " + quoted(CAIRN_COMMAND);
+    for (const auto& [name, value] : surroundings.environment) {
+        line += fmt::format(" {}={}", name, quoted(value));
+    }
+    line += fmt::format(" {}", quoted(CAIRN_COMMAND));
     for (const std::string& argument : arguments)
-        line += " " + quoted(argument);
+        line += fmt::format(" {}", quoted(argument));
     line += fmt::format(" >{} 2>{} </dev/null", quoted(scratch.file("out")), quoted(scratch.file("err")));
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(scratch.file("out")),
