@@ -18,5 +18,6 @@ if(XVFB)
   target_link_libraries(window_test PRIVATE cairn::window GTest::gtest_main)
   cairn_options(window_test)
   add_test(NAME Window COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/with_xvfb.sh $<TARGET_FILE:window_test>)
-  set_tests_properties(Window PROPERTIES TIMEOUT 60)
+  # GLX unloads its driver before the end, so a leak check cannot tell its leftovers from ours.
+  set_tests_properties(Window PROPERTIES TIMEOUT 60 ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 endif()
