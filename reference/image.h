@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "scenes/scene.h"
+#include "scenes/snapshot.h"
+
+namespace cairn::reference {
+
+/// Looks from `eye` to `target`; x to the right, y up.
+struct ReferenceCamera {
+    glm::dvec3 eye{0.0, 0.0, 1.0};
+    glm::dvec3 target{0.0};
+    glm::dvec3 up{0.0, 1.0, 0.0};
+    double yfov = 0.785398163397448;  ///< radians, the whole angle
+};
+
+struct ReferenceLight {
+    bool positional = false;
+    glm::dvec3 position{0.0};            ///< world, when positional
+    glm::dvec3 towards{0.4, 0.8, 0.45};  ///< direction to the light, any length, when not
+};
+
+/// Row after row, pixel (0, 0) at the top left.
+struct ReferenceImage {
+    static constexpr std::uint32_t no_primitive = 0xFFFFFFFFU;
+
+    int width = 0;
+    int height = 0;
+    std::vector<float> depth;       ///< distance from the eye in the world; infinite = nothing there
+    std::vector<std::uint8_t> lit;  ///< 1 = nothing stands between the surface and the light
+    std::vector<std::uint32_t>
+        primitive;              ///< triangles counted through the snapshot's items; or no_primitive
+    double milliseconds = 0.0;  ///< all rays; the tree of boxes is built before
+};
+
+/// What Embree sees of a snapshot's triangles (lines and points have no area and are left out): one ray
+/// through the centre of each pixel and one shadow ray from where it ends, one at a time. Alpha masks let
+/// rays through where the nearest texel fails the cutoff.
+class ImageTracer {
+public:
+    /// Both must outlive the tracer. @throws Error  Fault::memory when Embree cannot hold the triangles.
+    ImageTracer(const scenes::Scene& scene, const scenes::Snapshot& snapshot);
+    ImageTracer(const ImageTracer&) = delete;
+    ImageTracer& operator=(const ImageTracer&) = delete;
+    ImageTracer(ImageTracer&&) = delete;
+    ImageTracer& operator=(ImageTracer&&) = delete;
+    ~ImageTracer();
+
+    /// @param threads  0 = all cores.
+    [[nodiscard]] ReferenceImage trace(const ReferenceCamera& camera, const ReferenceLight& light, int width,
+                                       int height, int threads = 0) const;
+
+    [[nodiscard]] double build_milliseconds() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace cairn::reference
