@@ -1,6 +1,6 @@
 // Draco and meshopt, from streams made here.
 #include <cmath>
-#include <cstdlib>
+#include <memory>
 #include <string>
 
 #include <draco/compression/encode.h>
@@ -29,7 +29,7 @@ Scene load_glb(const GltfFile& file) {
 }
 
 /// Two triangles, uncompressed positions and 8-bit colours, by either of Draco's two methods.
-GltfFile with_draco(draco::MeshEncoderMethod method) {
+GltfFile with_draco(draco::MeshEncoderMethod method, bool metadata = false) {
     draco::TriangleSoupMeshBuilder builder;
     builder.Start(2);
     const int positions = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
@@ -45,6 +45,15 @@ GltfFile with_draco(draco::MeshEncoderMethod method) {
                                           c[face[1]], c[face[2]]);
     }
     const auto mesh = builder.Finalize();
+    if (metadata) {
+        auto names = std::make_unique<draco::GeometryMetadata>();
+        names->AddEntryString("name", "ear");
+        names->AddSubMetadata("part", std::make_unique<draco::Metadata>());
+        auto of_colors = std::make_unique<draco::AttributeMetadata>();
+        of_colors->AddEntryInt("kind", 7);
+        mesh->AddMetadata(std::move(names));
+        mesh->AddAttributeMetadata(colors, std::move(of_colors));
+    }
     draco::Encoder encoder;
     encoder.SetEncodingMethod(method);
     draco::EncoderBuffer buffer;
@@ -68,19 +77,27 @@ GltfFile with_draco(draco::MeshEncoderMethod method) {
     return file;
 }
 
+void expect_the_square(const GltfFile& file) {
+    const Scene scene = load_glb(file);
+    const Primitive& primitive = scene.meshes.at(0).primitives.at(0);
+    ASSERT_EQ(primitive.element_count(), 2U);
+    bool found = false;
+    for (const std::uint32_t index : primitive.indices)
+        if (primitive.positions[index] == glm::vec3(1, 1, 0.25F)) {
+            found = true;
+            EXPECT_EQ(primitive.colors[index], glm::u8vec4(0, 0, 255, 255));
+        }
+    EXPECT_TRUE(found);
+}
+
 TEST(Draco, BothMethodsGiveTheMesh) {
-    for (const auto method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
-        const Scene scene = load_glb(with_draco(method));
-        const Primitive& primitive = scene.meshes.at(0).primitives.at(0);
-        ASSERT_EQ(primitive.element_count(), 2U);
-        bool found = false;
-        for (const std::uint32_t index : primitive.indices)
-            if (primitive.positions[index] == glm::vec3(1, 1, 0.25F)) {
-                found = true;
-                EXPECT_EQ(primitive.colors[index], glm::u8vec4(0, 0, 255, 255));
-            }
-        EXPECT_TRUE(found) << "method " << method;
-    }
+    expect_the_square(with_draco(draco::MESH_SEQUENTIAL_ENCODING));
+    expect_the_square(with_draco(draco::MESH_EDGEBREAKER_ENCODING));
+}
+
+TEST(Draco, MetadataIsPassedOver) {
+    expect_the_square(with_draco(draco::MESH_SEQUENTIAL_ENCODING, true));
+    expect_the_square(with_draco(draco::MESH_EDGEBREAKER_ENCODING, true));
 }
 
 void expect_refused(const GltfFile& file, const std::string& part) {
@@ -215,7 +232,9 @@ TEST(Meshopt, FiltersAreUndone) {
     for (int i = 0; i < count; ++i)
         source.insert(source.end(), {0.25F * static_cast<float>(i), -3.5F, 100.0F});
     std::vector<std::uint32_t> filtered(count * 3);
-    meshopt_encodeFilterExp(filtered.data(), count, 12, 16, source.data());
+    for (std::size_t i = 0; i < source.size(); ++i)  // mantissa times 2^-8
+        filtered[i] = 0xF8000000U |
+                      (static_cast<std::uint32_t>(static_cast<std::int32_t>(source[i] * 256.0F)) & 0xFFFFFFU);
     Bytes packed(meshopt_encodeVertexBufferBound(count, 12));
     packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), filtered.data(), count, 12));
     std::vector<float> normals;

@@ -205,7 +205,7 @@ std::vector<Triangle> triangle_set(const Primitive& primitive, NameOf name_of) {
         Triangle triangle{};
         for (std::size_t c = 0; c < 3; ++c)
             triangle[c] = name_of(primitive.positions[primitive.indices[i + c]]);
-        std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+        std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
         set.push_back(triangle);
     }
     std::ranges::sort(set);

@@ -1,7 +1,9 @@
 #include "scenes/gltf/draco.h"
 
 #include <cstring>
-#include <exception>
+#include <memory>
+#include <new>
+#include <stdexcept>
 
 #include <draco/compression/decode.h>
 #include <fmt/format.h>
@@ -12,7 +14,7 @@ namespace cairn::scenes::gltf {
 namespace {
 
 /// Reads the counts from the head of a stream, so that an absurd one is refused before Draco allocates for
-/// it. https://google.github.io/draco/spec/, sections 3 and 4.
+/// it. https://google.github.io/draco/spec/, sections 3 to 5.
 class Head {
 public:
     Head(const std::string& where, std::span<const std::uint8_t> stream) : where_(where), stream_(stream) {}
@@ -28,9 +30,8 @@ public:
         if (stream_[7] != 1) fail(where_, "the stream holds no triangle mesh");
         const bool edgebreaker = stream_[8] == 1;
         const bool has_metadata = (stream_[10] & 0x80U) != 0;
-        // Metadata stands before the counts; glTF allows none.
-        if (has_metadata) fail(where_, "the stream carries metadata, which glTF does not allow");
         at_ = header_bytes;
+        if (has_metadata) skip_metadata();
         if (edgebreaker) next();  // the kind of traversal
         const std::uint64_t first = varint();
         const std::uint64_t second = varint();
@@ -55,6 +56,33 @@ private:
             if ((byte & 0x80U) == 0) return value;
         }
         fail(where_, "the stream's header is broken");
+    }
+
+    void skip(std::uint64_t count) {
+        if (count > stream_.size() - at_) fail(where_, "the stream ends inside its header");
+        at_ += count;
+    }
+
+    void skip_metadata() {
+        for (std::uint64_t attributes = varint(); attributes > 0; --attributes) {
+            varint();  // which attribute
+            skip_metadata_element(0);
+        }
+        skip_metadata_element(0);
+    }
+
+    /// Named values, then named elements of the same kind.
+    void skip_metadata_element(int depth) {
+        constexpr int deepest = 100;
+        if (depth > deepest) fail(where_, "the stream's metadata nests too deep");
+        for (std::uint64_t entries = varint(); entries > 0; --entries) {
+            skip(next());
+            skip(varint());
+        }
+        for (std::uint64_t inner = varint(); inner > 0; --inner) {
+            skip(next());
+            skip_metadata_element(depth + 1);
+        }
     }
 
     const std::string& where_;

@@ -39,7 +39,8 @@ std::unique_ptr<glm::dmat4> read_matrix(const std::string& where, const std::vec
     auto matrix = std::make_unique<glm::dmat4>();
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
-            (*matrix)[column][row] = numbers[static_cast<std::size_t>(column * 4 + row)];
+            (*matrix)[column][row] =
+                numbers[static_cast<std::size_t>(column) * 4 + static_cast<std::size_t>(row)];
     for (int column = 0; column < 4; ++column)
         if (std::abs((*matrix)[column][3] - (column == 3 ? 1.0 : 0.0)) > 1e-6)
             fail(where, "\"matrix\" is no affine transform: its last row is not 0 0 0 1");

@@ -21,8 +21,10 @@ using nlohmann::json;
 std::string first_line(std::string text) {
     if (text.starts_with("[json.exception")) text.erase(0, std::min(text.size(), text.find("] ") + 2));
     text.resize(std::min({text.size(), text.find('\n'), std::size_t{200}}));
+    // It may quote bytes of the file that are no text.
     for (char& letter : text)
-        if (static_cast<unsigned char>(letter) < 0x20) letter = ' ';
+        if (static_cast<unsigned char>(letter) < 0x20 || static_cast<unsigned char>(letter) > 0x7E)
+            letter = '?';
     return text;
 }
 

@@ -31,18 +31,16 @@ std::string percent_decoded(std::string_view text) {
     return result;
 }
 
-constexpr std::array<std::int8_t, 256> base64_values() {
-    std::array<std::int8_t, 256> values{};
+constexpr std::uint8_t no_digit = 0xFF;
+
+/// The value of each base64 digit, by its character.
+constexpr std::array<std::uint8_t, 256> base64_values() {
+    std::array<std::uint8_t, 256> values{};
     for (auto& value : values)
-        value = -1;
-    for (int i = 0; i < 26; ++i) {
-        values[static_cast<std::size_t>('A' + i)] = static_cast<std::int8_t>(i);
-        values[static_cast<std::size_t>('a' + i)] = static_cast<std::int8_t>(26 + i);
-    }
-    for (int i = 0; i < 10; ++i)
-        values[static_cast<std::size_t>('0' + i)] = static_cast<std::int8_t>(52 + i);
-    values['+'] = 62;
-    values['/'] = 63;
+        value = no_digit;
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (std::size_t i = 0; i < digits.size(); ++i)
+        values[static_cast<unsigned char>(digits[i])] = static_cast<std::uint8_t>(i);
     return values;
 }
 
@@ -55,9 +53,9 @@ std::vector<std::uint8_t> base64_decoded(const std::string& where, std::string_v
     std::uint32_t bits = 0;
     int bit_count = 0;
     for (const char letter : text) {
-        const int value = values[static_cast<unsigned char>(letter)];
-        if (value < 0) fail(where, "its data: URI holds a character that is not base64");
-        bits = (bits << 6U) | static_cast<std::uint32_t>(value);
+        const std::uint8_t value = values[static_cast<unsigned char>(letter)];
+        if (value == no_digit) fail(where, "its data: URI holds a character that is not base64");
+        bits = (bits << 6U) | value;
         bit_count += 6;
         if (bit_count < 8) continue;
         bit_count -= 8;
