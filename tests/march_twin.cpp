@@ -227,7 +227,9 @@ renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& vie
             dvec3 color(view.background);
             if (alpha > 0.0) {
                 dvec3 normal = glm::length(hit.normal) < 1e-6 ? -direction : glm::normalize(hit.normal);
-                if (glm::dot(normal, direction) > 0.0) normal = -normal;
+                const double away = glm::dot(normal, direction);
+                if (away > SILHOUETTE_BEND) normal = -normal;
+                else if (away > 0.0) normal = glm::normalize(normal - away * direction);
                 const dvec3 point = eye + direction * hit.depth;
                 auto to_light = [&](const dvec3& from) {
                     return view.light.positional ? glm::normalize(place(view.light.position) - from)

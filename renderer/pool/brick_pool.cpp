@@ -70,8 +70,8 @@ BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
     }
 
     const glm::ivec3 size = slots_ * side_;
-    color_ = make_texture(has_color ? GL_RGBA8 : GL_R8, size, GL_LINEAR);
-    normal_ = make_texture(GL_RGB10_A2, size, GL_LINEAR);
+    color_ = make_texture(has_color ? GL_RGBA8 : GL_R8, size, GL_NEAREST);
+    normal_ = make_texture(GL_RGB10_A2, size, GL_NEAREST);
     masks_ = gl::Buffer(std::size_t(slot_count_) * mask_words * 8, "brick masks");
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);

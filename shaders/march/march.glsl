@@ -315,9 +315,20 @@ float coverage_of(Sample s) {
 #endif
 }
 
-// Texture coordinate of a sample's middle; the border keeps a linear fetch inside the brick.
-vec3 pool_coordinate(Sample s) {
-    return (vec3(slot_texel(s.slot)) + 1.0 + s.middle) / vec3(pool_slots * (BRICK_M + 2));
+// Trilinear fetch at a sample's middle. By hand, because the samplers' own filtering rounds by where in the pool the slot
+// lies, and by driver; the brick's border keeps it inside the slot.
+vec4 filtered(sampler3D texels, Sample s) {
+    const vec3 place = s.middle + 0.5;  // from the border's first texel centre
+    const vec3 low = floor(place);
+    const vec3 f = place - low;
+    const ivec3 p = slot_texel(s.slot) + ivec3(low);
+    const vec4 y0 = mix(mix(texelFetch(texels, p, 0), texelFetch(texels, p + ivec3(1, 0, 0), 0), f.x),
+                        mix(texelFetch(texels, p + ivec3(0, 1, 0), 0), texelFetch(texels, p + ivec3(1, 1, 0), 0), f.x),
+                        f.y);
+    const vec4 y1 = mix(mix(texelFetch(texels, p + ivec3(0, 0, 1), 0), texelFetch(texels, p + ivec3(1, 0, 1), 0), f.x),
+                        mix(texelFetch(texels, p + ivec3(0, 1, 1), 0), texelFetch(texels, p + ivec3(1, 1, 1), 0), f.x),
+                        f.y);
+    return mix(y0, y1, f.z);
 }
 
 // --- ray states and lists ---

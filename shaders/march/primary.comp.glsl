@@ -19,13 +19,12 @@ bool visit(inout Ray ray, Sample s) {
     const float left = behind(state.color.a, coverage_of(s));
     const float weight = state.color.a - left;
     vec3 color = vec3(1.0);
-    const vec3 coordinate = pool_coordinate(s);
 #if HAS_COLOR
-    const vec4 filtered = textureLod(brick_color, coordinate, 0.0);
-    color = filtered.rgb / max(filtered.a, 1.0 / 512.0);
+    const vec4 mean = filtered(brick_color, s);
+    color = mean.rgb / max(mean.a, 1.0 / 512.0);
     color *= color;  // stored as square roots, for the eye's sake
 #endif
-    const vec3 normal = textureLod(brick_normal, coordinate, 0.0).xyz * 2.0 - 1.0;
+    const vec3 normal = filtered(brick_normal, s).xyz * 2.0 - 1.0;
     state.color.rgb += weight * color;
     state.normal_depth.xyz += weight * normal / max(length(normal), 1e-3);
     if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {

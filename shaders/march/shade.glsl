@@ -16,12 +16,15 @@ vec3 direction_to_light(vec3 point) {
     return view.light.w > 0.5 ? normalize(view.light.xyz - point) : view.light.xyz;
 }
 
-// The gathered normal, turned to the viewer: surfaces have two sides.
+// The gathered normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only
+// because its surface bends away in it, and is seen edge on.
 vec3 facing_normal(RayState state, vec3 direction) {
-    const vec3 gathered = state.normal_depth.xyz;
-    const float size = length(gathered);
+    const float size = length(state.normal_depth.xyz);
     if (size < 1e-6) return -direction;
-    return dot(gathered, direction) > 0.0 ? -gathered / size : gathered / size;
+    const vec3 normal = state.normal_depth.xyz / size;
+    const float away = dot(normal, direction);
+    if (away <= 0.0) return normal;
+    return away < SILHOUETTE_BEND ? normalize(normal - away * direction) : -normal;
 }
 
 void write_pixel(ivec2 pixel, RayState state, float visibility) {

@@ -7,9 +7,6 @@
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_attributes.glsl"
-#if HAS_MASK
-#include "voxelize/alpha_mask.glsl"
-#endif
 #include "produce/surface_color.glsl"
 
 layout(local_size_x = 64) in;
@@ -61,8 +58,9 @@ SurfacePoint point_under(Patch s, vec3 lattice) {
 }
 
 // The marks of the triangle in the 4^3 finer voxels of voxel `v`. A finer row in doubt takes what it may hold: coverage is
-// an estimate, and whether the voxel is occupied at all has been decided exactly.
-uvec2 fine_mask(ExactTriangle fine, uint triangle, ivec3 v) {
+// an estimate, and whether the voxel is occupied at all has been decided exactly. Of an alpha-masked triangle count the
+// finer voxels under whose centres it is not cut away.
+uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v) {
     uvec2 mask = uvec2(0u);
     for (int i = 0; i < 16; ++i) {
         const ivec2 row = 4 * v.yz + ivec2(i & 3, i >> 2);
@@ -73,9 +71,10 @@ uvec2 fine_mask(ExactTriangle fine, uint triangle, ivec3 v) {
                            all(lessThanEqual(row, fine.high.yz));
         uint bits = meets ? (0xFu << uint(span.x & 3)) & (0xFu >> uint(3 - span.y & 3)) : 0u;
 #if HAS_MASK
-        for (int x = 0; x < 4; ++x) {
-            if ((bits >> x & 1u) != 0u && !mask_touches(triangle, ivec3(4 * v.x + x, row), fine.shift)) {
-                bits &= ~(1u << x);
+        if ((s.material.flags & uint(MATERIAL_MASK_BIT)) != 0u) {
+            for (int x = 0; x < 4; ++x) {
+                const vec3 centre = (vec3(4 * v.x + x, row) + 0.5) * float(1 << fine.shift);
+                if (alpha_at(point_under(s, centre), s.material) < s.material.alpha_cutoff) bits &= ~(1u << x);
             }
         }
 #endif
@@ -100,8 +99,8 @@ vec3 middle_of(uvec2 mask, float count) {
 }
 
 // Adds the triangle's part in one voxel; `voxel` is its number in the scratch.
-void splat(ExactTriangle fine, Patch s, uint triangle, ivec3 v, uint voxel) {
-    const uvec2 mask = fine_mask(fine, triangle, v);
+void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
+    const uvec2 mask = fine_mask(fine, s, v);
     const int count = bitCount(mask.x) + bitCount(mask.y);
     if (count == 0) return;
     if (mask.x != 0u) atomicOr(scratch[2u * voxel], mask.x);
@@ -162,7 +161,7 @@ void main() {
             v.x = max(span.x, low.x);
             last = min(span.y, high.x);
         }
-        if (v.x <= last) splat(fine, s, triangle, v, scratch_voxel(tile_index, v - region_low));
+        if (v.x <= last) splat(fine, s, v, scratch_voxel(tile_index, v - region_low));
         ++v.x;
     }
 }

@@ -29,7 +29,6 @@ vec3 normal_at(SurfacePoint p, vec3 triangle_normal) {
     return size > 1e-6 ? n / size : triangle_normal;
 }
 
-#if HAS_COLOR
 // A texel's number along one axis, by glTF's wrap modes (MATERIAL_WRAP_*).
 uint wrapped(float coordinate, uint size, uint mode) {
     const float n = float(size);
@@ -45,17 +44,25 @@ vec4 nearest_texel(SurfaceMaterial material, vec2 uv) {
     return unpackUnorm4x8(texels[material.texel_offset + y * material.width + x]);
 }
 
+vec2 texcoord_at(SurfacePoint p) {
+    return p.weights.x * attributes[p.vertices.x].texcoord + p.weights.y * attributes[p.vertices.y].texcoord +
+           p.weights.z * attributes[p.vertices.z].texcoord;
+}
+
+vec4 vertex_color_at(SurfacePoint p) {
+    return p.weights.x * unpackUnorm4x8(attributes[p.vertices.x].color) +
+           p.weights.y * unpackUnorm4x8(attributes[p.vertices.y].color) +
+           p.weights.z * unpackUnorm4x8(attributes[p.vertices.z].color);
+}
+
 vec3 color_at(SurfacePoint p, SurfaceMaterial material) {
-    vec3 color = material.base_color.rgb;
-    color *= p.weights.x * unpackUnorm4x8(attributes[p.vertices.x].color).rgb +
-             p.weights.y * unpackUnorm4x8(attributes[p.vertices.y].color).rgb +
-             p.weights.z * unpackUnorm4x8(attributes[p.vertices.z].color).rgb;
-    if (material.width != 0u) {
-        const vec2 uv = p.weights.x * attributes[p.vertices.x].texcoord +
-                        p.weights.y * attributes[p.vertices.y].texcoord +
-                        p.weights.z * attributes[p.vertices.z].texcoord;
-        color *= linear_from_srgb(nearest_texel(material, uv).rgb);
-    }
+    vec3 color = material.base_color.rgb * vertex_color_at(p).rgb;
+    if (material.width != 0u) color *= linear_from_srgb(nearest_texel(material, texcoord_at(p)).rgb);
     return color;
 }
-#endif
+
+float alpha_at(SurfacePoint p, SurfaceMaterial material) {
+    float alpha = material.base_color.a * vertex_color_at(p).a;
+    if (material.width != 0u) alpha *= nearest_texel(material, texcoord_at(p)).a;
+    return alpha;
+}
