@@ -89,6 +89,7 @@ struct Renderer::Parts {
           const gl::ShaderSource& shaders)
         : shape(tree_shape),
           grid(flat.grid),
+          uniform_color(flat.uniform_color),
           surface(voxelizer::upload(flat)),
           lists(shape, flat),
           voxelizer(shaders),
@@ -103,6 +104,7 @@ struct Renderer::Parts {
 
     TreeShape shape;
     voxelizer::Grid grid;
+    glm::vec3 uniform_color;
     voxelizer::GpuSurface surface;
     TriangleLists lists;
     voxelizer::Voxelizer voxelizer;
@@ -173,7 +175,9 @@ Image Renderer::render(const View& view, const std::function<void(double)>& prog
     parts.statistics = FrameStatistics{};
     FrameStatistics& statistics = parts.statistics;
 
-    parts.marcher.begin_frame(march_view(view, parts.grid, parts.shape.n), parts.tree, parts.pool);
+    interop::MarchView marched = march_view(view, parts.grid, parts.shape.n);
+    marched.surface_color = glm::vec4(parts.uniform_color, 1.0F);
+    parts.marcher.begin_frame(marched, parts.tree, parts.pool);
     const double pixels = double(view.width) * view.height;
     for (;;) {
         const auto pass_start = Clock::now();

@@ -230,6 +230,7 @@ Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapsh
         Surface surface;
         surface.grid = grid;
         surface.has_color = materials.has_color;
+        surface.uniform_color = materials.uniform_color;
         flatten(surface, scene, snapshot, materials, options.attributes || materials.any_masked);
         surface.materials = std::move(materials.materials);
         surface.texels = std::move(materials.texels);

@@ -41,7 +41,8 @@ struct Surface {
     std::vector<interop::SurfaceMaterial> materials;  ///< at least one
     std::vector<std::uint32_t> texels;  ///< RGBA8 of the images that are used, and counts of masks
     std::uint64_t triangle_count = 0;
-    bool has_color = false;  ///< any base colour other than opaque white: factor, texture or vertex colour
+    bool has_color = false;  ///< the base colour varies: textures, vertex colours, or factors that differ
+    glm::vec3 uniform_color{1.0F};  ///< linear; the base colour everywhere, when it does not vary
     bool has_mask =
         false;  ///< any triangle that its mask cuts: those wholly shown or hidden are told apart here
 };

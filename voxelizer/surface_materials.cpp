@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
 #include "shaders/interop/config.h"
@@ -37,9 +38,16 @@ SurfaceMaterials::SurfaceMaterials(const scenes::Scene& scene, const scenes::Sna
                                    bool all_textures)
     : image_offsets_(scene.images.size(), -1), masks_(scene.materials.size()) {
     std::vector<bool> used(scene.materials.size());
+    std::optional<glm::vec3> color;
     for (const scenes::Item& item : snapshot.items) {
-        if (item.primitive->material >= 0) used[std::size_t(item.primitive->material)] = true;
+        const int index = item.primitive->material;
+        if (index >= 0) used[std::size_t(index)] = true;
+        const glm::vec3 factor =
+            index >= 0 ? glm::vec3(scene.materials[std::size_t(index)].base_color) : glm::vec3(1.0F);
+        has_color = has_color || (color && *color != factor);
+        color = factor;
     }
+    uniform_color = color.value_or(glm::vec3(1.0F));
     interop::SurfaceMaterial white{};
     white.base_color = glm::vec4(1.0F);
     materials.push_back(white);
@@ -47,8 +55,7 @@ SurfaceMaterials::SurfaceMaterials(const scenes::Scene& scene, const scenes::Sna
         const scenes::Material& material = scene.materials[i];
         const bool masked = used[i] && material.alpha_mode == scenes::AlphaMode::mask;
         any_masked = any_masked || masked;
-        const bool white_factor = glm::vec3(material.base_color) == glm::vec3(1.0F);
-        if (used[i]) has_color = has_color || !white_factor || material.texture >= 0;
+        has_color = has_color || (used[i] && material.texture >= 0);
         add_material(scene, material, used[i] && (masked || all_textures));
         if (masked) materials.back().flags |= 1U << MATERIAL_MASK_BIT;
     }

@@ -33,7 +33,8 @@ public:
 
     std::vector<interop::SurfaceMaterial> materials;
     std::vector<std::uint32_t> texels;
-    bool has_color = false;  ///< a factor or a texture that is not white
+    bool has_color = false;         ///< a texture, or factors that differ
+    glm::vec3 uniform_color{1.0F};  ///< the one factor, when has_color is false
     bool any_masked = false;
 
 private:

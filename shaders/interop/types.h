@@ -65,6 +65,7 @@ struct MarchView {
     vec4 light;            // xyz: position, or unit direction to the light; w: 1 = positional
     vec4 light_color;      // w: ambient
     vec4 background;
+    vec4 surface_color;    // base colour everywhere, when the pool holds none
     ivec4 size_shadow;     // xy: pixels; z: 1 = trace shadow rays
 };
 
@@ -86,7 +87,7 @@ struct MarchCounters {
 static_assert(sizeof(NodeEntry) == 16, "GLSL sees another layout");
 static_assert(sizeof(BrickTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(BrickPair) == 8, "GLSL sees another layout");
-static_assert(sizeof(MarchView) == 128, "GLSL sees another layout");
+static_assert(sizeof(MarchView) == 144, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
 static_assert(sizeof(MarchCounters) == 16, "GLSL sees another layout");
 static_assert(sizeof(SurfaceTriangle) == 16, "GLSL sees another layout");

@@ -18,7 +18,7 @@ RayState state;
 bool visit(inout Ray ray, Sample s) {
     const float left = behind(state.color.a, coverage_of(s));
     const float weight = state.color.a - left;
-    vec3 color = vec3(1.0);
+    vec3 color = view.surface_color.rgb;
 #if HAS_COLOR
     const vec4 mean = filtered(brick_color, s);
     color = mean.rgb / max(mean.a, 1.0 / 512.0);
