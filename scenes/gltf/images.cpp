@@ -57,6 +57,7 @@ Image decode_image(const std::string& where, std::span<const std::uint8_t> file,
     const std::uint64_t bytes = 4ULL * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
     if (width > widest_image || height > widest_image || bytes > most_image_bytes)
         fail(where, fmt::format("the image of {} x {} texels is too large", width, height), "scale it down");
+    budget.grant(file.size());
     budget.charge(where, bytes, 1);
 
     // 16 bits a channel and one filter byte a row; zlib's buffer grows by doubling.

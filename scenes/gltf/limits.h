@@ -25,20 +25,25 @@ inline constexpr int widest_image = 16384;
 /// One image, unpacked.
 inline constexpr std::uint64_t most_image_bytes = 256ULL << 20;
 
-/// What the decoded geometry, animation and images of one file may take, in proportion to the bytes it was
-/// read from: real files unpack to at most some dozens of times their size, and counts that a file cannot
-/// hold are refused here, before anything is allocated.
+/// What may be unpacked from one file, in proportion to the bytes it was read from: counts that a file cannot
+/// mean are refused here, before anything is allocated. A small file may always unpack to `floor_bytes`.
 class Budget {
 public:
+    explicit Budget(std::uint64_t floor_bytes) : left_(floor_bytes) {}
+
     /// More input was read.
     void grant(std::uint64_t input_bytes);
     /// @throws Error (Fault::input) when `count` things of `each_bytes` do not fit any more.
     void charge(const std::string& where, std::uint64_t count, std::uint64_t each_bytes);
 
 private:
-    static constexpr std::uint64_t floor_bytes = 64ULL << 20;
     static constexpr std::uint64_t bytes_per_input_byte = 256;
-    std::uint64_t left_ = floor_bytes;
+    std::uint64_t left_;
 };
+
+/// Geometry and animation: real files unpack to some dozens of times their size.
+inline constexpr std::uint64_t geometry_floor_bytes = 64ULL << 20;
+/// Pictures: a plain one unpacks to a thousand times its size, and scenes may have many of these.
+inline constexpr std::uint64_t picture_floor_bytes = 512ULL << 20;
 
 }  // namespace cairn::scenes::gltf

@@ -164,7 +164,7 @@ private:
 
     Image decode(const std::string& where, const ImageSource& source) {
         if (source.buffer_view >= 0)
-            return decode_image(where, reader_.buffers.view(source.buffer_view), reader_.budget);
+            return decode_image(where, reader_.buffers.view(source.buffer_view), reader_.picture_budget);
         if (!source.uri) fail(where, "it has neither a URI nor a buffer view");
         const auto file = is_data_uri(*source.uri)
                               ? decode_data_uri(where, *source.uri)
@@ -172,8 +172,7 @@ private:
                                           resolve_uri(where, *source.uri, reader_.source.folder,
                                                       reader_.source.trust_paths),
                                           most_file_bytes);
-        reader_.budget.grant(file.size());
-        return decode_image(where, file, reader_.budget);
+        return decode_image(where, file, reader_.picture_budget);
     }
 
     Reader& reader_;

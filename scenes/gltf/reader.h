@@ -24,7 +24,8 @@ struct Reader {
     ~Reader() = default;
 
     Source source;
-    Budget budget;
+    Budget budget{geometry_floor_bytes};
+    Budget picture_budget{picture_floor_bytes};
     Buffers buffers{source, budget};
     Accessors accessors{source, buffers, budget};
     Scene scene;
