@@ -7,8 +7,9 @@
 namespace cairn::scenes {
 
 /// Writes a scene as a .glb file that glTF validators accept: nodes, meshes, materials and base-colour
-/// textures (PNG), lights, cameras and instances. Meshes stay shared. Skins, morph targets and animations are not
-/// written: a mesh that they deform is written as its file stores it. Texture transforms are applied to the coordinates.
+/// textures (PNG), lights, cameras and instances. Meshes stay shared. Skins, morph targets and animations are
+/// not written: a mesh that they deform is written as its file stores it. Texture transforms are applied to
+/// the coordinates.
 /// @throws Error when the file cannot be written, or when the scene passes the 4 GiB that a .glb can hold.
 void write_glb(const Scene& scene, const std::filesystem::path& path);
 
