@@ -1,0 +1,14 @@
+# The voxelizer against the exact reference.
+set(CAIRN_ENGINE "/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb")
+set(voxelizer_definitions "")
+if(EXISTS "${CAIRN_ENGINE}")
+  list(APPEND voxelizer_definitions CAIRN_ENGINE="${CAIRN_ENGINE}")
+endif()
+set(voxelizer_libraries cairn::voxelizer cairn::reference cairn::scenes cairn::gl fmt::fmt)
+cairn_test(voxelizer_test SOURCES voxelizer_test.cpp gl_fixture.h lattice_surface.h LIBRARIES ${voxelizer_libraries})
+cairn_test(voxelizer_surface_test SOURCES voxelizer_surface_test.cpp lattice_surface.h scratch_folder.h
+           LIBRARIES ${voxelizer_libraries})
+cairn_test(voxelizer_mask_test SOURCES voxelizer_mask_test.cpp gl_fixture.h lattice_surface.h
+           LIBRARIES ${voxelizer_libraries})
+cairn_test(voxelizer_scenes_test SOURCES voxelizer_scenes_test.cpp gl_fixture.h lattice_surface.h
+           LIBRARIES ${voxelizer_libraries} DEFINITIONS ${voxelizer_definitions} TIMEOUT 120)
