@@ -95,7 +95,7 @@ Ray make_ray(vec3 origin, vec3 direction, float t_end, float cone_base, float co
     return ray;
 }
 
-// Puts the ray where it enters the root cube; false when it misses it.
+// Puts the ray where it enters the root cube, at ray.t or behind; false when it misses it.
 bool enter_root(inout Ray ray) {
     const vec3 side = vec3(float(ROOT_SIDE));
     const vec3 low = -ray.origin;
@@ -107,7 +107,7 @@ bool enter_root(inout Ray ray) {
     const vec3 tb = mix(high * ray.inverse, vec3(1e30), ray.inert);
     const vec3 near = min(ta, tb);
     const vec3 far = max(ta, tb);
-    const float t_near = max(max(near.x, near.y), max(near.z, 0.0));
+    const float t_near = max(max(near.x, near.y), max(near.z, ray.t));
     const float t_far = min(far.x, min(far.y, far.z));
     if (t_near > t_far || t_near >= ray.t_end) return false;
     ray.t = t_near;
@@ -251,31 +251,43 @@ int skim(inout Ray ray, Place place) {
     return SKIM_LEFT;
 }
 
+#define SEEK_OCCUPIED 0
+#define SEEK_DONE 1
+#define SEEK_MISSING 2
+
+// Brings the ray to its next occupied voxel: down the tree, over empty tiles, through bricks.
+int seek(inout Ray ray, inout Place place) {
+    for (int step = 0; step < STEP_LIMIT; ++step) {
+        int empty_shift = 0;
+        if (place.slot < 0) {
+            const int descent = descend(ray, place, empty_shift);
+            if (descent == DESCENT_MISSING) return SEEK_MISSING;
+        }
+        if (place.slot < 0) {
+            if (!step_over(ray, empty_shift)) return SEEK_DONE;
+        } else {
+            const int skimmed = skim(ray, place);
+            if (skimmed == SKIM_OCCUPIED) return SEEK_OCCUPIED;
+            if (skimmed == SKIM_ENDED) return SEEK_DONE;
+            place.slot = -1;
+        }
+    }
+    atomicAdd(counters.step_limit_hits, 1u);
+    return SEEK_DONE;
+}
+
 // Marches until the ray is done, or until it misses a tile: then it has asked for it, and stands where it resumes.
 //
-// Threads that run side by side all pay for the innermost loop's body, so it only skips; what an occupied voxel costs
-// is outside of it.
+// Threads that run side by side all pay for what any of them does in an innermost loop, so the loops are nested by how
+// seldom their work is needed: an occupied voxel, a tile, an empty cell.
 int march(inout Ray ray) {
     Place place;
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
     place.summary = uvec2(0u);
-    for (int step = 0; step < STEP_LIMIT; ++step) {
-        int empty_shift = 0;
-        if (place.slot < 0) {
-            const int descent = descend(ray, place, empty_shift);
-            if (descent == DESCENT_MISSING) return MARCH_MISSING;
-        }
-        if (place.slot < 0) {
-            if (!step_over(ray, empty_shift)) return MARCH_DONE;
-            continue;
-        }
-        const int skimmed = skim(ray, place);
-        if (skimmed == SKIM_ENDED) return MARCH_DONE;
-        if (skimmed == SKIM_LEFT) {
-            place.slot = -1;
-            continue;
-        }
+    for (int voxel = 0; voxel < STEP_LIMIT; ++voxel) {
+        const int found = seek(ray, place);
+        if (found != SEEK_OCCUPIED) return found == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
         const int voxel_shift = place.tile_shift - M_SHIFT;
         const ivec3 tile = ray.voxel >> place.tile_shift;
         const ivec3 low = (ray.voxel >> voxel_shift) << voxel_shift;

@@ -49,7 +49,7 @@ void main() {
     if (first_pass) {
         const int blocks = (view.size_shadow.x + 7) / 8;
         const int block = int(i / 64u);
-        pixel = ivec2(block % blocks, block / blocks) * 8 + ivec2(i % 8u, i / 8u % 8u);
+        pixel = ivec2(block % blocks, block / blocks) * 8 + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
         if (any(greaterThanEqual(pixel, view.size_shadow.xy))) return;
     } else {
         const int p = int(lists[list_in + i]);

@@ -47,14 +47,17 @@ void main() {
     const vec3 to_light = direction_to_light(receiver);
     // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
     // at a low angle stays among them for longer.
+    const float rise = max(dot(receiver_normal, to_light), 1e-3);
     own_height = 1.75 * side;
-    own_reach = side * clamp(2.5 / max(dot(receiver_normal, to_light), 1e-3), 8.0, 64.0);
+    own_reach = side * clamp(2.5 / rise, 8.0, 64.0);
 
     const float reach = view.light.w > 0.5 ? distance(view.light.xyz, receiver) : 1e30;
     Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
     bool inside = true;
     if (all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)))) {
         visibility = 1.0;
+        // Until here all voxels are its own: those that are not lie at least half a diagonal under their centres.
+        ray.t = min(0.88 * side / rise, own_reach);
         inside = enter_root(ray);
     } else {
         load_position(ray, state);
