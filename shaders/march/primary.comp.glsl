@@ -59,17 +59,17 @@ void main() {
     const vec3 direction = pixel_direction(pixel);
     Ray ray = make_ray(view.eye.xyz, direction, 1e30, 0.0, view.eye.w);
 
-    int end = MARCH_DONE;
+    bool inside = true;
     if (first_pass) {
         state.color = vec4(0.0, 0.0, 0.0, 1.0);
         state.normal_depth = vec4(0.0);
         state.voxel_t_weight = uvec4(0u);
-        if (enter_root(ray)) end = march(ray);
+        inside = enter_root(ray);
     } else {
         state = rays[index];
         load_position(ray, state);
-        end = march(ray);
     }
+    const int end = inside ? march(ray) : MARCH_DONE;
 
     if (end == MARCH_MISSING) {
         store_position(state, ray);
