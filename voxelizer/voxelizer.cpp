@@ -60,11 +60,19 @@ std::vector<std::uint32_t> subset_in_chunk(std::span<const std::uint32_t> subset
 
 Voxelizer::Voxelizer(const gl::ShaderSource& shaders)
     : shaders_(shaders),
-      mark_small_(gl::build_compute(shaders, "voxelize/mark_small.comp.glsl")),
+      mark_small_(gl::build_compute(shaders, "voxelize/mark_small.comp.glsl", {{"EXACT", "0"}})),
+      mark_doubtful_(gl::build_compute(shaders, "voxelize/mark_small.comp.glsl", {{"EXACT", "1"}})),
       mark_large_(gl::build_compute(shaders, "voxelize/mark_large.comp.glsl")),
       halve_(gl::build_compute(shaders, "voxelize/halve.comp.glsl")),
       queue_(VOXEL_QUEUE_COUNT * (1 + std::size_t(VOXEL_BATCH_TRIANGLES)) * sizeof(std::uint32_t),
              "voxel queues") {}
+
+void Voxelizer::mark_doubtful(const Region& region, unsigned count) {
+    set_region(mark_doubtful_, region);
+    mark_doubtful_.set("count", count);
+    mark_doubtful_.use();
+    gl::dispatch_threads(count, VOXEL_GROUP);
+}
 
 /// Every queued triangle gets as many workgroups as its queue's longest may need; a dispatch is kept to a
 /// size that takes a fraction of a second, because some systems stop a driver that is busy for longer.
@@ -101,6 +109,7 @@ std::vector<MaskCandidate> Voxelizer::mark_chunk(const Region& region, std::size
         gl::dispatch_threads(batch, VOXEL_GROUP);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
         const auto counts = queue_.read_all<std::uint32_t>(VOXEL_QUEUE_COUNT);
+        if (counts[VOXEL_QUEUE_DOUBT] > 0) mark_doubtful(region, counts[VOXEL_QUEUE_DOUBT]);
         for (const unsigned queue : {VOXEL_QUEUE_LARGE, VOXEL_QUEUE_HUGE}) {
             if (counts[queue] > 0) mark_queued(region, queue, counts[queue]);
         }

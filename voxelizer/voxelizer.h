@@ -45,6 +45,7 @@ private:
               std::optional<std::span<const std::uint32_t>> subset);
     /// Marks the bound chunk, or the bound subset of it; returns what the shaders left to the CPU.
     std::vector<MaskCandidate> mark_chunk(const Region& region, std::size_t count, bool has_subset);
+    void mark_doubtful(const Region& region, unsigned count);
     void mark_queued(const Region& region, unsigned queue, unsigned count);
     /// Adds far triangles, and voxels that the CPU found.
     void mark_on_cpu(const GpuSurface& surface, const Region& region, const std::vector<glm::ivec3>& voxels);
@@ -52,6 +53,7 @@ private:
 
     gl::ShaderSource shaders_;
     gl::Program mark_small_;
+    gl::Program mark_doubtful_;
     gl::Program mark_large_;
     gl::Program halve_;
     std::optional<MaskedMarker> masked_;  ///< built when a surface first needs it

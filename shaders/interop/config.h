@@ -22,7 +22,8 @@
 #define VOXEL_QUEUE_MASKED_SMALL 2  // those that a mask cuts, with a box of at most so many voxels
 #define VOXEL_MASKED_SMALL_BOX 4096
 #define VOXEL_QUEUE_MASKED_LARGE 3
-#define VOXEL_QUEUE_COUNT 4
+#define VOXEL_QUEUE_DOUBT 4  // those of few rows that the float filter could not decide
+#define VOXEL_QUEUE_COUNT 5
 // llvmpipe ends every loop of an invocation once they have turned 65535 times in all, and says nothing. Two limits keep
 // well under it: voxels along an axis of a region, and steps to decide about one voxel of a masked triangle.
 #define VOXEL_REGION_SIDE 16384

@@ -8,6 +8,11 @@
 //         the voxels of row (y, z) that it touches: an inclusive interval of x, within t.low.x and t.high.x; empty when
 //         its x > its y. The row must lie within t.low.yz and t.high.yz.
 //
+//     ivec2 filtered_row_span(ExactTriangle t, ivec2 row, out bool in_doubt)
+//     ivec2 exact_row_span(ExactTriangle t, ivec2 row)
+//         its two tiers, for hot loops: where lanes run in lockstep a driver may compute the second for all of them, so
+//         that rows in doubt are better gathered and decided apart (mark_large)
+//
 // Voxels are numbered in the whole root cube: voxel i spans [i, i + 1] * 2^shift. Boxes and triangles are closed:
 // contact counts. Segments and points are triangles too.
 //

@@ -1,5 +1,8 @@
-// One thread is one triangle: it marks those of few rows, and leaves the others to mark_large,
-// and those that a mask cuts to list_masked.
+// One thread is one triangle: it marks those of few rows, and leaves the others to mark_large, and those that a mask cuts
+// to list_masked. Rows in doubt are not decided here: lanes run in lockstep, and doubles for one would cost all of them
+// dearly. A triangle with such a row is marked anew by EXACT=1, whose threads take it from the queue.
+// defines: EXACT=0
+// defines: EXACT=1
 #include "voxelize/bits.glsl"
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
@@ -7,39 +10,59 @@
 
 layout(local_size_x = VOXEL_GROUP) in;
 
-layout(std430, binding = SSBO_VOXEL_SUBSET) restrict readonly buffer VoxelSubset { uint voxel_subset[]; };
-
 uniform int voxel_shift;
-uniform uint first;      // triangle, or place in the subset
 uniform uint count;
+
+#if !EXACT
+layout(std430, binding = SSBO_VOXEL_SUBSET) restrict readonly buffer VoxelSubset { uint voxel_subset[]; };
+uniform uint first;  // triangle, or place in the subset
 uniform int has_subset;
+
+// Whether the triangle is left to a later pass.
+bool enqueue_if_not_small(uint triangle, uint material, ivec3 size) {
+    const float rows = float(size.y) * float(size.z);
+    if ((surface_materials[material].flags & (1u << MATERIAL_MASK_BIT)) != 0u) {
+        const bool small = rows * float(size.x) <= VOXEL_MASKED_SMALL_BOX;
+        enqueue(small ? VOXEL_QUEUE_MASKED_SMALL : VOXEL_QUEUE_MASKED_LARGE, triangle);
+        return true;
+    }
+    if (rows <= VOXEL_SMALL_ROWS) return false;
+    enqueue(rows > VOXEL_LARGE_ROWS ? VOXEL_QUEUE_HUGE : VOXEL_QUEUE_LARGE, triangle);
+    return true;
+}
+#endif
 
 void main() {
     const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
     if (thread >= count) return;
+#if EXACT
+    const uint triangle = queued(VOXEL_QUEUE_DOUBT, thread);
+#else
     const uint triangle = has_subset != 0 ? voxel_subset[first + thread] : first + thread;
+#endif
     const uvec4 corners = surface_triangles[triangle].vertices_material;
     const ExactTriangle t = exact_triangle(surface_position(corners.x), surface_position(corners.y),
                                            surface_position(corners.z), voxel_shift);
     const ivec3 low = max(t.low, region_origin);
     const ivec3 high = min(t.high, region_origin + region_size - 1);
-    if (any(greaterThan(low, high))) return;
-    const ivec2 size = high.yz - low.yz + 1;
-    const float rows = float(size.x) * float(size.y);
-    if ((surface_materials[corners.w].flags & (1u << MATERIAL_MASK_BIT)) != 0u) {
-        const bool small = rows * float(high.x - low.x + 1) <= VOXEL_MASKED_SMALL_BOX;
-        enqueue(small ? VOXEL_QUEUE_MASKED_SMALL : VOXEL_QUEUE_MASKED_LARGE, triangle);
-        return;
-    }
-    if (rows > VOXEL_SMALL_ROWS) {
-        enqueue(rows > VOXEL_LARGE_ROWS ? VOXEL_QUEUE_HUGE : VOXEL_QUEUE_LARGE, triangle);
-        return;
-    }
+    const ivec3 size = high - low + 1;
+#if !EXACT
+    if (any(lessThan(size, ivec3(1))) || enqueue_if_not_small(triangle, corners.w, size)) return;
+#endif
     // One loop over all rows, not two nested ones: threads side by side have about as many rows, not the same shape.
     ivec2 row = low.yz;
-    for (int i = size.x * size.y; i > 0; --i) {
-        mark_span(row, row_span(t, row));
+    bool any_doubt = false;
+    for (int i = size.y * size.z; i > 0; --i) {
+#if EXACT
+        mark_span(row, exact_row_span(t, row));
+#else
+        bool in_doubt;
+        const ivec2 span = filtered_row_span(t, row, in_doubt);
+        if (!in_doubt) mark_span(row, span);
+        any_doubt = any_doubt || in_doubt;
+#endif
         ++row.x;
         if (row.x > high.y) row = ivec2(low.y, row.y + 1);
     }
+    if (any_doubt) enqueue(VOXEL_QUEUE_DOUBT, triangle);
 }
