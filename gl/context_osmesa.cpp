@@ -1,10 +1,9 @@
 #include <array>
 
-#include <GL/osmesa.h>
-
 #include "base/error.h"
 #include "gl/context_backends.h"
 #include "gl/dynamic_library.h"
+#include "gl/osmesa.h"
 
 namespace cairn::gl {
 namespace {
@@ -13,22 +12,21 @@ class OsmesaContext final : public Context {
 public:
     explicit OsmesaContext(bool debug)
         : library_({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6") {
-        const std::array<int, 11> attributes = {OSMESA_FORMAT,
-                                                OSMESA_RGBA,
-                                                OSMESA_DEPTH_BITS,
+        const std::array<int, 11> attributes = {osmesa_format,
+                                                osmesa_rgba,
+                                                osmesa_depth_bits,
                                                 0,
-                                                OSMESA_PROFILE,
-                                                OSMESA_CORE_PROFILE,
-                                                OSMESA_CONTEXT_MAJOR_VERSION,
+                                                osmesa_profile,
+                                                osmesa_core_profile,
+                                                osmesa_context_major_version,
                                                 4,
-                                                OSMESA_CONTEXT_MINOR_VERSION,
+                                                osmesa_context_minor_version,
                                                 5,
                                                 0};
-        const auto create =
-            library_.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
+        const auto create = library_.function<OSMesaCreateContextAttribsFn*>("OSMesaCreateContextAttribs");
         context_ = create(attributes.data(), nullptr);
         // Without 4.5, whatever there is can at least say its name: load_functions refuses it with that.
-        const std::array<int, 3> any = {OSMESA_FORMAT, OSMESA_RGBA, 0};
+        const std::array<int, 3> any = {osmesa_format, osmesa_rgba, 0};
         if (context_ == nullptr) context_ = create(any.data(), nullptr);
         if (context_ == nullptr) {
             throw Error(Fault::context, "OSMesa", "it offers no OpenGL 4.5 core context",
@@ -37,7 +35,7 @@ public:
         try {
             OsmesaContext::make_current();
             load_functions(reinterpret_cast<void* (*)(const char*)>(
-                               library_.function<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress")),
+                               library_.function<OSMesaGetProcAddressFn*>("OSMesaGetProcAddress")),
                            debug);
         } catch (...) {
             destroy();
@@ -52,7 +50,7 @@ public:
 
     void make_current() override {
         // A default framebuffer must exist, but nothing here draws to it.
-        const auto make = library_.function<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent");
+        const auto make = library_.function<OSMesaMakeCurrentFn*>("OSMesaMakeCurrent");
         if (make(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE) {
             throw Error(Fault::context, "OSMesa", "the context cannot be made current");
         }
@@ -60,7 +58,7 @@ public:
     [[nodiscard]] std::string_view backend() const override { return "osmesa"; }
 
 private:
-    void destroy() { library_.function<decltype(&OSMesaDestroyContext)>("OSMesaDestroyContext")(context_); }
+    void destroy() { library_.function<OSMesaDestroyContextFn*>("OSMesaDestroyContext")(context_); }
 
     DynamicLibrary library_;
     OSMesaContext context_ = nullptr;

@@ -9,9 +9,9 @@ packages=(
   libdraco-dev libmeshoptimizer-dev libembree-dev libtbb-dev libcli11-dev
   # opened when the program runs: OpenGL without a GPU and without a display
   libegl1 libgl1-mesa-dri
-  # to test, to chart, and to have something to show
-  libgtest-dev libbenchmark-dev glslang-tools xvfb gnuplot-nox assimp-testmodels
+  # to test, and to have something to show
+  libgtest-dev glslang-tools xvfb assimp-testmodels
 )
 
 # Mesa 25.1 ended OSMesa, so a newer distribution may lack it; EGL then takes its place.
-optional_packages=(libosmesa6-dev)
+optional_packages=(libosmesa6)
