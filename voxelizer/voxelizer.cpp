@@ -47,6 +47,12 @@ void check_region(const Region& region) {
         fmt::format("{0} x {0} x {0} would fit", side));
 }
 
+/// How many rows of a large triangle a thread may have: its loops over rows and words stay far from the limit
+/// that VOXEL_REGION_SIDE tells of.
+unsigned thread_rows(const Region& region) {
+    return unsigned(std::clamp(VOXEL_REGION_SIDE / (region.size.x / 32 + 4), 1, VOXEL_THREAD_ROWS));
+}
+
 /// The part of a subset that lies in one chunk, by the chunk's own numbers.
 std::vector<std::uint32_t> subset_in_chunk(std::span<const std::uint32_t> subset, std::size_t chunk) {
     std::vector<std::uint32_t> out;
@@ -74,16 +80,16 @@ void Voxelizer::mark_doubtful(const Region& region, unsigned count) {
     gl::dispatch_threads(count, VOXEL_GROUP);
 }
 
-/// Every queued triangle gets as many workgroups as its queue's longest may need; a dispatch is kept to a
-/// size that takes a fraction of a second, because some systems stop a driver that is busy for longer.
+/// A huge triangle gets as many workgroups as the region's largest may need; a dispatch is kept to a size
+/// that takes a fraction of a second, because some systems stop a driver that is busy for longer.
 void Voxelizer::mark_queued(const Region& region, unsigned queue, unsigned count) {
     constexpr unsigned groups_at_once = 1U << 20;
-    const unsigned region_rows = unsigned(region.size.y) * unsigned(region.size.z);
-    const unsigned most_rows = queue == VOXEL_QUEUE_HUGE ? region_rows : VOXEL_LARGE_ROWS;
-    // A thread's loops over rows and words stay far from the limit that VOXEL_REGION_SIDE tells of.
-    const unsigned rows_a_thread = std::clamp(2 * VOXEL_REGION_SIDE / (region.size.x / 32 + 1), 1, 64);
-    const unsigned rows_a_group = rows_a_thread * VOXEL_GROUP;
-    const unsigned slices = std::clamp((most_rows + rows_a_group - 1) / rows_a_group, 1U, 65535U);
+    const glm::uvec3 size(region.size);
+    // Twice the rows, because steps are shared unevenly.
+    const unsigned rows = 2 * (size.y * size.z + 8 * std::max(size.y, size.z));
+    const unsigned rows_a_group = thread_rows(region) * VOXEL_GROUP;
+    const unsigned slices =
+        queue == VOXEL_QUEUE_LARGE ? 1 : std::min((rows + rows_a_group - 1) / rows_a_group, 65535U);
     const unsigned triangles_at_once = std::clamp(groups_at_once / slices, 1U, 65535U);
     set_region(mark_large_, region);
     mark_large_.set("queue", queue);
@@ -105,6 +111,7 @@ std::vector<MaskCandidate> Voxelizer::mark_chunk(const Region& region, std::size
         mark_small_.set("first", unsigned(first));
         mark_small_.set("count", unsigned(batch));
         mark_small_.set("has_subset", int(has_subset));
+        mark_small_.set("thread_rows", int(thread_rows(region)));
         mark_small_.use();
         gl::dispatch_threads(batch, VOXEL_GROUP);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -12,10 +12,10 @@
 // The voxelizer marks so many triangles in one pass: bounds its queues and the time of a dispatch.
 #define VOXEL_BATCH_TRIANGLES 262144
 #define VOXEL_CANDIDATES 1048576  // voxels of masked triangles at a time
-// Triangles of at most so many rows are marked by the thread that meets them; others wait in a queue for a workgroup,
-// or, past VOXEL_LARGE_ROWS, for many.
+// Triangles of at most so many rows are marked by the thread that meets them; others wait in a queue for a workgroup, or
+// for many where a thread of one would have more than VOXEL_THREAD_ROWS.
 #define VOXEL_SMALL_ROWS 64
-#define VOXEL_LARGE_ROWS 4096
+#define VOXEL_THREAD_ROWS 64
 #define VOXEL_GROUP 64
 #define VOXEL_QUEUE_LARGE 0
 #define VOXEL_QUEUE_HUGE 1

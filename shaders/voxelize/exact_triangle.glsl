@@ -149,16 +149,40 @@ vec2 bounds_at(SideBounds s, float row) {
     return vec2(max(max(lower.x, lower.y), lower.z), min(min(upper.x, upper.y), upper.z));
 }
 
-// The span, or doubt about it.
-ivec2 filtered_row_span(ExactTriangle t, ivec2 row, out bool in_doubt) {
-    const vec2 r = vec2(row - t.low.yz);
-    const vec3 sides = t.side_y * r.x + t.side_z * r.y + t.side_offset;
+// What the rows of one z share.
+struct RowSlice {
+    vec3 side;     // of side_y, side_z, side_offset: all but y
+    vec2 xz;       // bounds of x
+    float plane;   // of `plane`: all but y
+};
+
+RowSlice row_slice(ExactTriangle t, int z) {
+    const float r = float(z - t.low.z);
+    return RowSlice(t.side_z * r + t.side_offset, bounds_at(t.xz, r), t.plane.y * r + t.plane.z);
+}
+
+// The y that rows of a slice may have: first and last. The triangle meets no other.
+ivec2 rows_of_slice(ExactTriangle t, RowSlice slice) {
+    if (!t.filtered) return ivec2(t.low.y, t.high.y);
+    // side >= -SIDE_ERROR, and as much again, and more, for the roundings here.
+    const vec3 bound = -(slice.side + 2.0 * SIDE_ERROR) / mix(t.side_y, vec3(1.0), equal(t.side_y, vec3(0.0)));
+    const vec3 slack = 0.01 + 1.0e-6 * abs(bound);
+    const vec3 low = mix(vec3(-FAR_AWAY), bound - slack, greaterThan(t.side_y, vec3(0.0)));
+    const vec3 high = mix(vec3(FAR_AWAY), bound + slack, lessThan(t.side_y, vec3(0.0)));
+    const float last = float(t.high.y - t.low.y);
+    return t.low.y + ivec2(clamp(ceil(max(max(low.x, low.y), low.z)), 0.0, last + 1.0),
+                           clamp(floor(min(min(high.x, high.y), high.z)), -1.0, last));
+}
+
+// The span of row (y, z of the slice), or doubt about it.
+ivec2 filtered_row_span(ExactTriangle t, RowSlice slice, int y, out bool in_doubt) {
+    const float r = float(y - t.low.y);
+    const vec3 sides = t.side_y * r + slice.side;
     const float side = min(min(sides.x, sides.y), sides.z);
 
-    const vec2 xy = bounds_at(t.xy, r.x);
-    const vec2 xz = bounds_at(t.xz, r.y);
-    const vec2 bounds = vec2(max(xy.x, xz.x), min(xy.y, xz.y));
-    const float plane_low = t.has_plane ? t.plane.x * r.x + t.plane.y * r.y + t.plane.z : -FAR_AWAY;
+    const vec2 xy = bounds_at(t.xy, r);
+    const vec2 bounds = vec2(max(xy.x, slice.xz.x), min(xy.y, slice.xz.y));
+    const float plane_low = t.has_plane ? t.plane.x * r + slice.plane : -FAR_AWAY;
     const float plane_high = t.has_plane ? plane_low + t.plane_width : FAR_AWAY;
     const vec2 widest = vec2(max(bounds.x - t.side_bounds_error, plane_low - t.plane_error),
                              min(bounds.y + t.side_bounds_error, plane_high + t.plane_error));
@@ -171,6 +195,10 @@ ivec2 filtered_row_span(ExactTriangle t, ivec2 row, out bool in_doubt) {
     const bool outside = side < -SIDE_ERROR || wide.x > wide.y;
     in_doubt = !t.filtered || (!outside && (side < SIDE_ERROR || wide != narrow));
     return outside ? ivec2(1, 0) : ivec2(wide) + t.low.x;
+}
+
+ivec2 filtered_row_span(ExactTriangle t, ivec2 row, out bool in_doubt) {
+    return filtered_row_span(t, row_slice(t, row.y), row.x, in_doubt);
 }
 
 // ---- The exact tier ------------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@
 #include "voxelize/bits.glsl"
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
+#include "voxelize/row_steps.glsl"
 #include "voxelize/surface.glsl"
 
 layout(local_size_x = VOXEL_GROUP) in;
@@ -17,9 +18,10 @@ uniform uint count;
 layout(std430, binding = SSBO_VOXEL_SUBSET) restrict readonly buffer VoxelSubset { uint voxel_subset[]; };
 uniform uint first;  // triangle, or place in the subset
 uniform int has_subset;
+uniform int thread_rows;  // of large triangles, at most
 
-// Whether the triangle is left to a later pass.
-bool enqueue_if_not_small(uint triangle, uint material, ivec3 size) {
+// Whether the triangle is left to a later pass; `size`: of its bounding box in the region.
+bool enqueue_if_not_small(ExactTriangle t, uint triangle, uint material, ivec3 size) {
     const float rows = float(size.y) * float(size.z);
     if ((surface_materials[material].flags & (1u << MATERIAL_MASK_BIT)) != 0u) {
         const bool small = rows * float(size.x) <= VOXEL_MASKED_SMALL_BOX;
@@ -27,7 +29,9 @@ bool enqueue_if_not_small(uint triangle, uint material, ivec3 size) {
         return true;
     }
     if (rows <= VOXEL_SMALL_ROWS) return false;
-    enqueue(rows > VOXEL_LARGE_ROWS ? VOXEL_QUEUE_HUGE : VOXEL_QUEUE_LARGE, triangle);
+    const RowSteps steps = row_steps(t, low_in_region(t), high_in_region(t));
+    const float rows_a_thread = ceil(float(steps.count) / float(VOXEL_GROUP)) * float(steps.most_rows);
+    enqueue(rows_a_thread > float(thread_rows) ? VOXEL_QUEUE_HUGE : VOXEL_QUEUE_LARGE, triangle);
     return true;
 }
 #endif
@@ -43,26 +47,29 @@ void main() {
     const uvec4 corners = surface_triangles[triangle].vertices_material;
     const ExactTriangle t = exact_triangle(surface_position(corners.x), surface_position(corners.y),
                                            surface_position(corners.z), voxel_shift);
-    const ivec3 low = max(t.low, region_origin);
-    const ivec3 high = min(t.high, region_origin + region_size - 1);
+    const ivec3 low = low_in_region(t);
+    const ivec3 high = high_in_region(t);
     const ivec3 size = high - low + 1;
 #if !EXACT
-    if (any(lessThan(size, ivec3(1))) || enqueue_if_not_small(triangle, corners.w, size)) return;
+    if (any(lessThan(size, ivec3(1))) || enqueue_if_not_small(t, triangle, corners.w, size)) return;
 #endif
-    // One loop over all rows, not two nested ones: threads side by side have about as many rows, not the same shape.
-    ivec2 row = low.yz;
-    bool any_doubt = false;
-    for (int i = size.y * size.z; i > 0; --i) {
 #if EXACT
-        mark_span(row, exact_row_span(t, row));
+    for (int z = low.z; z <= high.z; ++z) {
+        for (int y = low.y; y <= high.y; ++y) mark_span(ivec2(y, z), exact_row_span(t, ivec2(y, z)));
+    }
 #else
-        bool in_doubt;
-        const ivec2 span = filtered_row_span(t, row, in_doubt);
-        if (!in_doubt) mark_span(row, span);
-        any_doubt = any_doubt || in_doubt;
-#endif
-        ++row.x;
-        if (row.x > high.y) row = ivec2(low.y, row.y + 1);
+    bool any_doubt = false;
+    for (int z = low.z; z <= high.z; ++z) {
+        const RowSlice slice = row_slice(t, z);
+        const ivec2 rows = rows_of_slice(t, slice);
+        const int last = min(rows.y, high.y);
+        for (int y = max(rows.x, low.y); y <= last; ++y) {
+            bool in_doubt;
+            const ivec2 span = filtered_row_span(t, slice, y, in_doubt);
+            if (!in_doubt) mark_span(ivec2(y, z), span);
+            any_doubt = any_doubt || in_doubt;
+        }
     }
     if (any_doubt) enqueue(VOXEL_QUEUE_DOUBT, triangle);
+#endif
 }
