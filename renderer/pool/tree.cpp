@@ -1,6 +1,7 @@
 #include "renderer/pool/tree.h"
 
 #include <algorithm>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -51,15 +52,14 @@ Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes,
 void Tree::begin_round(std::uint32_t round, const std::vector<std::uint32_t>& brick_stamps) {
     round_ = round;
     slots_sorted_ = false;
-    blocks_sorted_ = false;
-    blocks_exhausted_ = false;
+    blocks_gathered_ = false;
     for (int slot = 0; slot < bricks_.count(); ++slot) {
         const std::uint32_t owner = slot_owner_[std::size_t(slot)];
         const std::uint32_t stamp = brick_stamps[std::size_t(slot)];
         if (owner == none || stamp <= bricks_.stamp(slot)) continue;
         bricks_.touch(slot, stamp);
         for (std::uint32_t entry = owner; entry != none; entry = parent_entry(entry)) {
-            if (blocks_.stamp(int(block_of(entry))) == stamp) break;
+            if (blocks_.stamp(int(block_of(entry))) >= stamp) break;
             blocks_.touch(int(block_of(entry)), stamp);
         }
     }
@@ -150,30 +150,28 @@ bool Tree::can_evict_block(int block) const {
            block_child_blocks_[std::size_t(block)] == 0 && blocks_.stamp(block) < round_;
 }
 
+void Tree::gather_old_block(int block) {
+    if (!can_evict_block(block)) return;
+    old_blocks_.emplace_back(blocks_.stamp(block), block);
+    std::push_heap(old_blocks_.begin(), old_blocks_.end(), std::greater<>());
+}
+
 int Tree::take_block() {
     if (const int block = blocks_.take_free(); block >= 0) return block;
-    if (blocks_exhausted_) return -1;
-    // Taking a block away may make its parent's block the next candidate, so one sorting may not reach all.
-    for (int attempt = 0; attempt < 2; ++attempt) {
-        if (!blocks_sorted_) {
-            old_blocks_.clear();
-            for (int block = 0; block < blocks_.count(); ++block) {
-                if (can_evict_block(block)) old_blocks_.push_back(block);
-            }
-            std::sort(old_blocks_.begin(), old_blocks_.end(),
-                      [&](int a, int b) { return blocks_.stamp(a) > blocks_.stamp(b); });
-            blocks_sorted_ = true;
-        }
-        while (!old_blocks_.empty()) {
-            const int block = old_blocks_.back();
-            old_blocks_.pop_back();
-            if (!can_evict_block(block)) continue;
-            evict_block(block);
-            return blocks_.take_free();
-        }
-        blocks_sorted_ = false;
+    if (!blocks_gathered_) {
+        old_blocks_.clear();
+        for (int block = 0; block < blocks_.count(); ++block)
+            gather_old_block(block);
+        blocks_gathered_ = true;
     }
-    blocks_exhausted_ = true;
+    while (!old_blocks_.empty()) {
+        const int block = old_blocks_.front().second;
+        std::pop_heap(old_blocks_.begin(), old_blocks_.end(), std::greater<>());
+        old_blocks_.pop_back();
+        if (!can_evict_block(block)) continue;
+        evict_block(block);
+        return blocks_.take_free();
+    }
     return -1;
 }
 
@@ -185,10 +183,12 @@ void Tree::evict_block(int block) {
     const std::uint32_t parent = block_parent_[std::size_t(block)];
     entries_[parent].children = 0;
     mark_dirty(parent);
-    if (parent != 0) --block_child_blocks_[block_of(parent)];
     block_parent_[std::size_t(block)] = none;
     blocks_.release(block);
     ++counters_.nodes_evicted;
+    if (parent == 0) return;
+    --block_child_blocks_[block_of(parent)];
+    gather_old_block(int(block_of(parent)));  // it may be the next to go
 }
 
 void Tree::upload() {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "gl/buffer.h"
@@ -28,6 +29,8 @@ public:
 
     [[nodiscard]] const TreeShape& shape() const { return shape_; }
     [[nodiscard]] const Tile& tile(std::uint32_t entry) const { return tiles_[entry]; }
+    /// The mirror of an entry, as the next upload() leaves it on the GPU.
+    [[nodiscard]] const interop::NodeEntry& node(std::uint32_t entry) const { return entries_[entry]; }
     [[nodiscard]] std::uint32_t entry_count() const { return std::uint32_t(entries_.size()); }
     [[nodiscard]] std::size_t size_bytes() const { return node_buffer_.size_bytes(); }
     [[nodiscard]] int bricks_resident() const { return bricks_.used_count(); }
@@ -78,6 +81,7 @@ private:
     [[nodiscard]] int take_block();
     [[nodiscard]] bool can_evict_block(int block) const;
     void evict_brick(int slot);
+    void gather_old_block(int block);
     void evict_block(int block);
     void pin_path(std::uint32_t entry);
     void mark_dirty(std::uint32_t entry) { dirty_.push_back(entry); }
@@ -93,10 +97,10 @@ private:
     std::vector<std::uint32_t> block_birth_;   // the round that filled it
     std::vector<std::uint32_t> slot_owner_;    // entry, or none
     std::vector<int> old_slots_;               // of this round, oldest last
-    std::vector<int> old_blocks_;
     bool slots_sorted_ = false;
-    bool blocks_sorted_ = false;
-    bool blocks_exhausted_ = false;
+    /// Stamp and number of the blocks that may be taken away in this round: a heap, the oldest on top.
+    std::vector<std::pair<std::uint32_t, int>> old_blocks_;
+    bool blocks_gathered_ = false;
     std::vector<std::uint32_t> dirty_;
     gl::Buffer node_buffer_;
     gl::TextureHandle node_texture_;

@@ -3,14 +3,10 @@
 #include <algorithm>
 
 namespace cairn::renderer {
-namespace {
 
-/// Numbers held before the lists are made anew: 256 MiB. They cost time to remake, never correctness.
-constexpr std::size_t held_limit = std::size_t(64) << 20U;
-
-}  // namespace
-
-TriangleLists::TriangleLists(const TreeShape& shape, const voxelizer::Surface& surface) : shape_(shape) {
+TriangleLists::TriangleLists(const TreeShape& shape, const voxelizer::Surface& surface,
+                             std::size_t held_limit)
+    : shape_(shape), held_limit_(held_limit) {
     boxes_.reserve(surface.triangle_count);
     all_.reserve(surface.triangle_count);
     std::uint32_t chunk_first = 0;
@@ -35,7 +31,7 @@ TriangleLists::TriangleLists(const TreeShape& shape, const voxelizer::Surface& s
 std::span<const std::uint32_t> TriangleLists::list(const Tile& tile) {
     if (tile.level == 0) return all_;
     if (const auto found = lists_.find(key_of(tile)); found != lists_.end()) return found->second;
-    if (held_ > held_limit) {
+    if (held_ > held_limit_) {
         lists_.clear();
         held_ = 0;
     }

@@ -14,8 +14,12 @@ namespace cairn::renderer {
 /// a tile deep in the tree costs what its own triangles cost.
 class TriangleLists {
 public:
+    /// Numbers held before the lists are made anew: 256 MiB. They cost time to remake, never correctness.
+    static constexpr std::size_t default_held_limit = std::size_t(64) << 20U;
+
     /// Keeps a copy of what it needs of the surface: a bounding box a triangle.
-    TriangleLists(const TreeShape& shape, const voxelizer::Surface& surface);
+    TriangleLists(const TreeShape& shape, const voxelizer::Surface& surface,
+                  std::size_t held_limit = default_held_limit);
 
     struct Box {
         glm::ivec3 low;  ///< lattice units, closed
@@ -33,6 +37,7 @@ private:
     std::vector<Box> boxes_;
     std::vector<std::uint32_t> all_;
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> lists_;
+    std::size_t held_limit_;
     std::size_t held_ = 0;
 };
 
