@@ -11,8 +11,8 @@
 
 /// A glTF 2.0 scene in memory, as its file shares it: meshes once, nodes and instances referring to them.
 ///
-/// Units are the file's (metres by glTF's rule), right-handed, +Y up. Indices into the vectors of `Scene` are ints,
-/// -1 = none; the loader has checked them all, so they never need checking again.
+/// Units are the file's (metres by glTF's rule), right-handed, +Y up. Indices into the vectors of `Scene` are
+/// ints, -1 = none; the loader has checked them all, so they never need checking again.
 namespace cairn::scenes {
 
 /// How a texture coordinate outside [0, 1] is brought back (glTF 2.0, sampler.wrapS and wrapT).
@@ -35,8 +35,8 @@ struct Texture {
 
 enum class AlphaMode : std::uint8_t {
     opaque,
-    mask,  ///< a texel whose alpha is under the cutoff is a hole in the surface
-    blend, ///< counts as surface
+    mask,   ///< a texel whose alpha is under the cutoff is a hole in the surface
+    blend,  ///< counts as surface
 };
 
 struct Material {
@@ -58,23 +58,25 @@ struct MorphTarget {
 };
 
 struct SkinWeights {
-    glm::u16vec4 joints{0};  ///< into Skin::joints
-    glm::vec4 weights{0.0F};    ///< with Primitive::more_skin: sum 1 (normalized when loaded), or all 0
+    glm::u16vec4 joints{0};   ///< into Skin::joints
+    glm::vec4 weights{0.0F};  ///< with Primitive::more_skin: sum 1 (normalized when loaded), or all 0
 };
 
-/// Vertices and what they span. Strips, fans and loops are unrolled and missing indices written out when loaded, so
-/// `indices` always holds 1, 2 or 3 entries a point, line or triangle. An optional attribute is empty when the file
-/// has none, else it has one entry a vertex.
+/// Vertices and what they span. Strips, fans and loops are unrolled and missing indices written out when
+/// loaded, so `indices` always holds 1, 2 or 3 entries a point, line or triangle. An optional attribute is
+/// empty when the file has none, else it has one entry a vertex.
 struct Primitive {
     Topology topology = Topology::triangles;
     int material = -1;  ///< into Scene::materials; -1: white, opaque
     std::vector<std::uint32_t> indices;
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
-    std::vector<glm::vec2> texcoords;  ///< the set that the material's base colour texture uses, before uv_from_mesh
-    std::vector<glm::u8vec4> colors;   ///< COLOR_0: linear RGBA, 255 = 1
+    std::vector<glm::vec2>
+        texcoords;  ///< the set that the material's base colour texture uses, before uv_from_mesh
+    std::vector<glm::u8vec4> colors;  ///< COLOR_0: linear RGBA, 255 = 1
     std::vector<SkinWeights> skin;
-    std::vector<std::vector<SkinWeights>> more_skin;  ///< further influences (JOINTS_1, ...), each one a vertex
+    std::vector<std::vector<SkinWeights>>
+        more_skin;  ///< further influences (JOINTS_1, ...), each one a vertex
     std::vector<MorphTarget> morph_targets;
 
     [[nodiscard]] std::size_t element_count() const {
@@ -98,26 +100,27 @@ struct Trs {
 struct Node {
     std::string name;
     std::vector<int> children;
-    Trs trs;                     ///< used when `matrix` is null
+    Trs trs;  ///< used when `matrix` is null
     std::unique_ptr<glm::dmat4> matrix;
     int mesh = -1;
     int skin = -1;
     int camera = -1;
     int light = -1;
-    std::vector<Trs> instances;  ///< EXT_mesh_gpu_instancing: the mesh is drawn once for each; empty: once, in place
+    std::vector<Trs>
+        instances;  ///< EXT_mesh_gpu_instancing: the mesh is drawn once for each; empty: once, in place
     std::vector<float> morph_weights;  ///< overrides the mesh's when not empty
 };
 
 struct Skin {
-    std::vector<int> joints;                    ///< nodes
-    std::vector<glm::dmat4> joint_from_mesh;    ///< inverse bind matrices, one a joint
+    std::vector<int> joints;                  ///< nodes
+    std::vector<glm::dmat4> joint_from_mesh;  ///< inverse bind matrices, one a joint
 };
 
 enum class Path : std::uint8_t { translation, rotation, scale, weights };
 enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
 
-/// Key frames of one property of one node. `values` holds `width` floats a key (3, 4, or the count of morph targets);
-/// for cubic_spline three times that: in-tangent, value, out-tangent.
+/// Key frames of one property of one node. `values` holds `width` floats a key (3, 4, or the count of morph
+/// targets); for cubic_spline three times that: in-tangent, value, out-tangent.
 struct Channel {
     int node = -1;
     Path path = Path::translation;
@@ -137,10 +140,10 @@ struct Animation {
 struct Camera {
     std::string name;
     bool perspective = true;
-    double yfov = 0.8;         ///< radians, perspective only
-    double ymag = 1.0;         ///< half height, orthographic only
+    double yfov = 0.8;  ///< radians, perspective only
+    double ymag = 1.0;  ///< half height, orthographic only
     double znear = 0.01;
-    double zfar = 0.0;         ///< 0 = infinite
+    double zfar = 0.0;  ///< 0 = infinite
 };
 
 /// KHR_lights_punctual; shines along -Z of its node.
@@ -173,7 +176,8 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<SceneRoots> scenes;  ///< at least one
     int default_scene = 0;
-    std::vector<std::string> warnings;  ///< once each: optional extensions that are not supported, and the like
+    std::vector<std::string>
+        warnings;  ///< once each: optional extensions that are not supported, and the like
 };
 
 }  // namespace cairn::scenes

@@ -23,8 +23,8 @@ struct Bounds {
     [[nodiscard]] bool empty() const { return low.x > high.x; }
 };
 
-/// One mesh primitive at one place. What is shared stays shared: the spans point into the Scene, or into the Snapshot
-/// where a skin or morph targets moved the vertices.
+/// One mesh primitive at one place. What is shared stays shared: the spans point into the Scene, or into the
+/// Snapshot where a skin or morph targets moved the vertices.
 struct Item {
     const Primitive* primitive = nullptr;
     std::span<const glm::vec3> positions;  ///< mesh space; one a vertex
@@ -42,9 +42,9 @@ struct PlacedCamera {
 };
 
 struct When {
-    double seconds = 0.0;           ///< clamped to each channel's keys, as glTF asks
-    std::optional<int> animation;   ///< none: the rest pose
-    std::optional<int> scene_index; ///< none: the file's default scene
+    double seconds = 0.0;            ///< clamped to each channel's keys, as glTF asks
+    std::optional<int> animation;    ///< none: the rest pose
+    std::optional<int> scene_index;  ///< none: the file's default scene
 };
 
 /// One scene of a file at one moment: what stands where.
@@ -63,7 +63,8 @@ struct Snapshot {
 
 /// Evaluates animation, morph targets and skins at one moment. The scene must outlive the snapshot.
 ///
-/// @throws Error  Fault::usage when the animation or the scene index does not exist; Fault::input when a transform
+/// @throws Error  Fault::usage when the animation or the scene index does not exist; Fault::input when a
+/// transform
 ///                gives a vertex that is not finite.
 [[nodiscard]] Snapshot take_snapshot(const Scene& scene, const When& when = {});
 

@@ -18,6 +18,10 @@ struct SceneAt {
     std::vector<int> resolutions;
 };
 
+void PrintTo(const SceneAt& scene, std::ostream* out) {
+    *out << std::string_view(scene.path).substr(std::string_view(scene.path).find_last_of('/') + 1);
+}
+
 class RealScene : public GlTest, public ::testing::WithParamInterface<SceneAt> {};
 
 TEST_P(RealScene, HasTheBitsOfTheExactReference) {
