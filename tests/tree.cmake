@@ -1,6 +1,6 @@
 # The tree, its pools, and what fills them.
 cairn_test(tree_test
-  SOURCES tree_test.cpp tree_stress_test.cpp tree_view.h
+  SOURCES tree_test.cpp tree_stress_test.cpp tree_view.h triangle_lists_test.cpp oracle_test.cpp
           lattice_surface.h gl_fixture.h
   LIBRARIES cairn::renderer cairn::reference cairn::scenes fmt::fmt
   TIMEOUT 120)
