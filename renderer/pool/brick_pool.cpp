@@ -29,13 +29,17 @@ gl::TextureHandle make_texture(GLenum format, glm::ivec3 size, GLint filter) {
     return texture;
 }
 
-/// A box of at least `count` slots, as near to a cube as it can, no side past `most`.
+/// The largest box of at most `count` slots, no side past `most`; of several, the one nearest to a cube.
 glm::ivec3 box_of(int count, int most) {
-    glm::ivec3 box;
-    box.x = std::min(most, int(std::ceil(std::cbrt(double(count)))));
-    box.y = std::min(most, int(std::ceil(std::sqrt(double(count) / box.x))));
-    box.z = std::min(most, (count + box.x * box.y - 1) / (box.x * box.y));
-    return box;
+    glm::ivec3 best(0);
+    auto volume = [](const glm::ivec3& box) { return std::int64_t(box.x) * box.y * box.z; };
+    for (int x = std::min(most, int(std::cbrt(double(count)) + 1e-9)); x >= 1; --x) {
+        for (int y = x; y <= most && std::int64_t(x) * y * y <= count; ++y) {
+            const glm::ivec3 box(x, y, std::min(most, count / (x * y)));
+            if (volume(box) > volume(best)) best = box;
+        }
+    }
+    return best;
 }
 
 }  // namespace
@@ -54,20 +58,11 @@ BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
     if (most == 0) {
         throw Error(Fault::usage, "brick pool",
                     fmt::format("{:.2f} MiB hold no brick of {}^3 voxels", double(bytes) / 0x1p20, shape.m),
-                    fmt::format("give it at least {:.2f} MiB", double(slot_bytes) / 0x1p20));
+                    fmt::format("give it at least {:.2f} MiB",
+                                std::ceil(double(slot_bytes) / 0x1p20 * 100.0) / 100.0));
     }
-    // The box is a little larger than asked for unless one row is taken away.
     slots_ = box_of(int(most), most_a_side);
-    slot_count_ = std::min(int(most), slots_.x * slots_.y * slots_.z);
-    while (std::size_t(slots_.x) * std::size_t(slots_.y) * std::size_t(slots_.z) * slot_bytes > bytes &&
-           slots_.z > 1) {
-        --slots_.z;
-        slot_count_ = slots_.x * slots_.y * slots_.z;
-    }
-    if (slots_.z == 1 && slot_count_ < slots_.x * slots_.y) {
-        slots_ = {std::min(slot_count_, most_a_side), 1, 1};
-        slot_count_ = slots_.x;
-    }
+    slot_count_ = slots_.x * slots_.y * slots_.z;
 
     const glm::ivec3 size = slots_ * side_;
     color_ = make_texture(has_color ? GL_RGBA8 : GL_R8, size, GL_NEAREST);

@@ -1,0 +1,153 @@
+#include "tests/produced_brick.h"
+
+#include "shaders/interop/bindings.h"
+
+namespace cairn::test {
+namespace {
+
+using renderer::BrickPool;
+
+GLuint bound_texture(const BrickPool& pool, unsigned unit, GLenum kind) {
+    pool.bind_for_reading();
+    glActiveTexture(GL_TEXTURE0 + unit);
+    GLint id = 0;
+    glGetIntegerv(kind, &id);
+    return GLuint(id);
+}
+
+GLuint mask_buffer(const BrickPool& pool) {
+    GLint id = 0;
+    glGetTextureLevelParameteriv(bound_texture(pool, TEXTURE_BRICK_MASKS, GL_TEXTURE_BINDING_BUFFER), 0,
+                                 GL_TEXTURE_BUFFER_DATA_STORE_BINDING, &id);
+    return GLuint(id);
+}
+
+int mask_words(int m) {
+    const int blocks = m / 4 * (m / 4) * (m / 4);
+    return blocks + (blocks + 63) / 64;
+}
+
+std::vector<std::uint32_t> read_texels(GLuint texture, const glm::ivec3& low, int side, GLenum format,
+                                       GLenum type) {
+    std::vector<std::uint32_t> texels(std::size_t(side) * std::size_t(side) * std::size_t(side));
+    glGetTextureSubImage(texture, 0, low.x, low.y, low.z, side, side, side, format, type,
+                         GLsizei(texels.size() * sizeof(texels[0])), texels.data());
+    return texels;
+}
+
+glm::ivec3 size_of(GLuint texture) {
+    glm::ivec3 size;
+    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &size.x);
+    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &size.y);
+    glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_DEPTH, &size.z);
+    return size;
+}
+
+std::size_t volume(const glm::ivec3& size) {
+    return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+}
+
+template <typename Occupied>
+voxelizer::BitGrid bits_where(int low, int side, const Occupied& occupied) {
+    voxelizer::BitGrid bits{glm::ivec3(side)};
+    for (int z = 0; z < side; ++z) {
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                if (occupied(glm::ivec3(x, y, z) + low)) bits.set({x, y, z});
+            }
+        }
+    }
+    return bits;
+}
+
+}  // namespace
+
+glm::ivec4 ProducedBrick::color_at(const glm::ivec3& place) const {
+    const std::uint32_t texel = color[index(place)];
+    return {texel & 255U, texel >> 8U & 255U, texel >> 16U & 255U, texel >> 24U};
+}
+
+glm::vec3 ProducedBrick::normal_at(const glm::ivec3& place) const {
+    const std::uint32_t texel = normal[index(place)];
+    return glm::vec3(texel & 1023U, texel >> 10U & 1023U, texel >> 20U & 1023U) / 1023.0F * 2.0F - 1.0F;
+}
+
+bool ProducedBrick::occupied(const glm::ivec3& place) const {
+    const glm::ivec3 block = place / 4;
+    const glm::ivec3 voxel = place % 4;
+    const int blocks = m / 4;
+    const std::size_t summaries = std::size_t((blocks * blocks * blocks + 63) / 64);
+    const std::uint64_t word =
+        masks[summaries + std::size_t(block.x + blocks * (block.y + blocks * block.z))];
+    return (word >> unsigned(voxel.x + 4 * (voxel.y + 4 * voxel.z)) & 1U) != 0;
+}
+
+bool ProducedBrick::summary_at(const glm::ivec3& block) const {
+    const auto bit = unsigned(block.x + m / 4 * (block.y + m / 4 * block.z));
+    return (masks[bit / 64] >> (bit % 64) & 1U) != 0;
+}
+
+ProducedBrick read_brick(const BrickPool& pool, const renderer::TreeShape& shape, int slot) {
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    ProducedBrick brick;
+    brick.m = shape.m;
+    const glm::ivec3 low = pool.first_texel(slot);
+    const int side = shape.m + 2;
+    brick.color = read_texels(bound_texture(pool, TEXTURE_BRICK_COLOR, GL_TEXTURE_BINDING_3D), low, side,
+                              GL_RGBA, GL_UNSIGNED_BYTE);
+    if (!pool.has_color()) {
+        // One channel, red, holds the coverage: read as RGBA it is (coverage, 0, 0, 255).
+        for (std::uint32_t& texel : brick.color)
+            texel = (texel & 255U) << 24U;
+    }
+    brick.normal = read_texels(bound_texture(pool, TEXTURE_BRICK_NORMAL, GL_TEXTURE_BINDING_3D), low, side,
+                               GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV);
+    const std::size_t words = std::size_t(mask_words(shape.m));
+    brick.masks.resize(words);
+    glGetNamedBufferSubData(mask_buffer(pool), GLintptr(std::size_t(slot) * words * 8), GLsizeiptr(words * 8),
+                            brick.masks.data());
+    return brick;
+}
+
+PoolTextures textures_of(const BrickPool& pool) {
+    PoolTextures textures;
+    textures.color_size = size_of(bound_texture(pool, TEXTURE_BRICK_COLOR, GL_TEXTURE_BINDING_3D));
+    textures.normal_size = size_of(bound_texture(pool, TEXTURE_BRICK_NORMAL, GL_TEXTURE_BINDING_3D));
+    GLint64 mask_bytes = 0;
+    glGetNamedBufferParameteri64v(mask_buffer(pool), GL_BUFFER_SIZE, &mask_bytes);
+    textures.bytes = volume(textures.color_size) * (pool.has_color() ? 4 : 1) +
+                     volume(textures.normal_size) * 4 + std::size_t(mask_bytes);
+    return textures;
+}
+
+voxelizer::BitGrid mask_bits(const ProducedBrick& brick) {
+    return bits_where(0, brick.m, [&](const glm::ivec3& place) { return brick.occupied(place); });
+}
+
+voxelizer::BitGrid coverage_bits(const ProducedBrick& brick) {
+    return bits_where(-1, brick.m + 2, [&](const glm::ivec3& place) { return brick.color_at(place).a != 0; });
+}
+
+std::size_t slot_bytes(int m, bool has_color) {
+    return volume(glm::ivec3(m + 2)) * (has_color ? 8 : 5) + std::size_t(mask_words(m)) * 8;
+}
+
+BrickMaker::BrickMaker(const renderer::TreeShape& shape, const voxelizer::Surface& surface, int slots)
+    : shape_(shape),
+      surface_(upload(surface)),
+      lists_(shape, surface),
+      producer_(shape, surface_, lists_, {}),
+      pool_(shape, surface.has_color, std::size_t(slots) * slot_bytes(shape.m, surface.has_color)) {}
+
+std::vector<ProducedBrick> BrickMaker::produce(const std::vector<renderer::Tile>& tiles) {
+    std::vector<renderer::BrickRequest> requests;
+    for (const renderer::Tile& tile : tiles)
+        requests.push_back({tile, int(requests.size())});
+    producer_.produce(requests, pool_);
+    std::vector<ProducedBrick> bricks;
+    for (const renderer::BrickRequest& request : requests)
+        bricks.push_back(read_brick(pool_, shape_, request.slot));
+    return bricks;
+}
+
+}  // namespace cairn::test

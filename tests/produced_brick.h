@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "renderer/pool/brick_pool.h"
+#include "renderer/pool/tree_shape.h"
+#include "renderer/produce/surface_producer.h"
+#include "voxelizer/bit_grid.h"
+#include "voxelizer/surface.h"
+
+/// Reads bricks back as the marcher sees them.
+namespace cairn::test {
+
+/// One slot of the pool. Places run from -1 to M, the border included.
+struct ProducedBrick {
+    int m = 0;
+    std::vector<std::uint32_t> color;   ///< RGBA8; of a pool without colour the coverage alone
+    std::vector<std::uint32_t> normal;  ///< 10, 10, 10, 2 bits
+    std::vector<std::uint64_t> masks;   ///< the summary, then the blocks
+
+    [[nodiscard]] std::size_t index(const glm::ivec3& place) const {
+        const glm::ivec3 p = place + 1;
+        return std::size_t(p.x + (m + 2) * (p.y + (m + 2) * p.z));
+    }
+    /// Red, green, blue (square roots, times the coverage) and coverage, 0 to 255.
+    [[nodiscard]] glm::ivec4 color_at(const glm::ivec3& place) const;
+    /// Normal times coverage.
+    [[nodiscard]] glm::vec3 normal_at(const glm::ivec3& place) const;
+    [[nodiscard]] bool occupied(const glm::ivec3& place) const;  ///< by the masks; not in the border
+    [[nodiscard]] bool summary_at(const glm::ivec3& block) const;
+    [[nodiscard]] bool operator==(const ProducedBrick&) const = default;
+};
+
+[[nodiscard]] ProducedBrick read_brick(const renderer::BrickPool& pool, const renderer::TreeShape& shape,
+                                       int slot);
+
+/// What of the driver's memory the pool's stores take.
+struct PoolTextures {
+    glm::ivec3 color_size{0};
+    glm::ivec3 normal_size{0};
+    std::size_t bytes = 0;
+};
+[[nodiscard]] PoolTextures textures_of(const renderer::BrickPool& pool);
+
+/// Occupancy by the masks, and by the coverage: border included, so one voxel larger on every side.
+[[nodiscard]] voxelizer::BitGrid mask_bits(const ProducedBrick& brick);
+[[nodiscard]] voxelizer::BitGrid coverage_bits(const ProducedBrick& brick);
+
+/// A surface and all that produces its bricks.
+class BrickMaker {
+public:
+    BrickMaker(const renderer::TreeShape& shape, const voxelizer::Surface& surface, int slots);
+
+    /// Fills the first slots with these tiles, in one call.
+    [[nodiscard]] std::vector<ProducedBrick> produce(const std::vector<renderer::Tile>& tiles);
+    [[nodiscard]] ProducedBrick produce_one(const renderer::Tile& tile) { return produce({tile}).front(); }
+    [[nodiscard]] const renderer::BrickPool& pool() const { return pool_; }
+
+private:
+    renderer::TreeShape shape_;
+    voxelizer::GpuSurface surface_;
+    renderer::TriangleLists lists_;
+    renderer::SurfaceProducer producer_;
+    renderer::BrickPool pool_;
+};
+
+/// Bytes of one slot, as BrickPool counts them.
+[[nodiscard]] std::size_t slot_bytes(int m, bool has_color);
+
+}  // namespace cairn::test
