@@ -194,6 +194,25 @@ TEST_F(VoxelizerTest, DeepLevelsAreExact) {
     }
 }
 
+TEST_F(VoxelizerTest, TrianglesTooWideForFloatsAreExact) {
+    // Sides of more than 2^24 units through small voxels in the middle of them.
+    Random random(18);
+    for (const int level : {4, 14, 20, 24}) {
+        const std::int64_t side = std::int64_t(1) << (LATTICE_BITS - level);
+        std::vector<LatticeTriangle> triangles;
+        const glm::i64vec3 middle(N / 2 + 7);
+        const Region region{level, glm::ivec3(middle / side) - 6, glm::ivec3(12)};
+        for (int i = 0; i < 60; ++i) {
+            const glm::i64vec3 a = random.point(-N, 2 * N);
+            const glm::i64vec3 b = random.point(-N, 2 * N);
+            triangles.push_back({a, b,
+                                 glm::clamp(middle * std::int64_t(3) - a - b + random.point(-9, 9) * side,
+                                            glm::i64vec3(-N), glm::i64vec3(2 * N))});
+        }
+        expect_exact(triangles, region);
+    }
+}
+
 TEST_F(VoxelizerTest, TrianglesFarBeyondTheCubeAreExact) {
     Random random(15);
     for (int i = 0; i < 60; ++i) {
