@@ -145,7 +145,8 @@ TEST_P(SurfaceProducerTest, NeighboursAgreeOnTheTexelsTheyShare) {
 
 TEST_P(SurfaceProducerTest, TileHasTheSameTexelsAloneAndAmongHundreds) {
     const voxelizer::Surface surface = random_surface(200, GetParam().has_color, 44);
-    const int count = GetParam().m == 32 ? 60 : 300;  // more than go to the GPU at once
+    // More than go to the GPU at once.
+    const int count = GetParam().m == 8 ? 1000 : GetParam().m == 16 ? 200 : 60;
     Random random(45);
     std::vector<Tile> tiles;
     for (int i = 0; i < count; ++i)
@@ -153,9 +154,8 @@ TEST_P(SurfaceProducerTest, TileHasTheSameTexelsAloneAndAmongHundreds) {
     BrickMaker maker(shape(), surface, count * 5 / 4);
     ASSERT_GE(maker.pool().slot_count(), count);
     const std::vector<ProducedBrick> together = maker.produce(tiles);
-    EXPECT_TRUE(maker.produce(tiles) == together)
-        << "the slots were not written whole, or the sums not cleared";
-    for (std::size_t i = 0; i < tiles.size(); i += 23)
+    // All into the first slot, one after the other: it must be written whole.
+    for (std::size_t i = 0; i < tiles.size(); i += tiles.size() / 12)
         EXPECT_TRUE(maker.produce_one(tiles[i]) == together[i]) << "seeds 44 and 45, " << to_string(tiles[i]);
 }
 
