@@ -22,11 +22,11 @@ public:
     explicit Voxelizer(const gl::ShaderSource& shaders = {});
 
     /// @param subset  global triangle numbers, or none for all. Must hold every triangle that meets the
-    /// region for the
-    ///                bits to be right; others cost time only. Far triangles are always marked.
+    ///                region for the bits to be right; others cost time only. Far triangles are always
+    ///                marked.
     /// @throws Error  Fault::memory when the region's bits pass the driver's shader-storage limit: the
-    /// message says
-    ///                what would fit.
+    ///                message says what would fit. Fault::usage when the region has more than
+    ///                VOXEL_REGION_SIDE voxels along an axis.
     [[nodiscard]] BitGrid voxelize(const GpuSurface& surface, const Region& region,
                                    std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 

@@ -161,17 +161,22 @@ RowSlice row_slice(ExactTriangle t, int z) {
     return RowSlice(t.side_z * r + t.side_offset, bounds_at(t.xz, r), t.plane.y * r + t.plane.z);
 }
 
+// Whole r, first and last, that may have slope * r + rest >= -SIDE_ERROR for all three sides; of `filtered` triangles.
+vec2 rows_inside_sides(vec3 slope, vec3 rest) {
+    // As much again, and more, for the roundings here.
+    const vec3 bound = -(rest + 2.0 * SIDE_ERROR) / mix(slope, vec3(1.0), equal(slope, vec3(0.0)));
+    const vec3 slack = 0.01 + 1.0e-6 * abs(bound);
+    const vec3 low = mix(vec3(-FAR_AWAY), bound - slack, greaterThan(slope, vec3(0.0)));
+    const vec3 high = mix(vec3(FAR_AWAY), bound + slack, lessThan(slope, vec3(0.0)));
+    return vec2(ceil(max(max(low.x, low.y), low.z)), floor(min(min(high.x, high.y), high.z)));
+}
+
 // The y that rows of a slice may have: first and last. The triangle meets no other.
 ivec2 rows_of_slice(ExactTriangle t, RowSlice slice) {
     if (!t.filtered) return ivec2(t.low.y, t.high.y);
-    // side >= -SIDE_ERROR, and as much again, and more, for the roundings here.
-    const vec3 bound = -(slice.side + 2.0 * SIDE_ERROR) / mix(t.side_y, vec3(1.0), equal(t.side_y, vec3(0.0)));
-    const vec3 slack = 0.01 + 1.0e-6 * abs(bound);
-    const vec3 low = mix(vec3(-FAR_AWAY), bound - slack, greaterThan(t.side_y, vec3(0.0)));
-    const vec3 high = mix(vec3(FAR_AWAY), bound + slack, lessThan(t.side_y, vec3(0.0)));
+    const vec2 rows = rows_inside_sides(t.side_y, slice.side);
     const float last = float(t.high.y - t.low.y);
-    return t.low.y + ivec2(clamp(ceil(max(max(low.x, low.y), low.z)), 0.0, last + 1.0),
-                           clamp(floor(min(min(high.x, high.y), high.z)), -1.0, last));
+    return t.low.y + ivec2(clamp(rows.x, 0.0, last + 1.0), clamp(rows.y, -1.0, last));
 }
 
 // The span of row (y, z of the slice), or doubt about it.
@@ -190,8 +195,9 @@ ivec2 filtered_row_span(ExactTriangle t, RowSlice slice, int y, out bool in_doub
                                 min(bounds.y - t.side_bounds_error, plane_high - t.plane_error));
     // Closed voxel i touches [x, ...) from i = ceil(x) - 1 on.
     const float last = float(t.high.x - t.low.x);
-    const vec2 wide = clamp(vec2(ceil(widest.x) - 1.0, floor(widest.y)), vec2(0.0, -1.0), vec2(last + 1.0, last));
-    const vec2 narrow = clamp(vec2(ceil(narrowest.x) - 1.0, floor(narrowest.y)), vec2(0.0, -1.0), vec2(last + 1.0, last));
+    const vec2 least = vec2(0.0, -1.0), most = vec2(last + 1.0, last);
+    const vec2 wide = clamp(vec2(ceil(widest.x) - 1.0, floor(widest.y)), least, most);
+    const vec2 narrow = clamp(vec2(ceil(narrowest.x) - 1.0, floor(narrowest.y)), least, most);
     const bool outside = side < -SIDE_ERROR || wide.x > wide.y;
     in_doubt = !t.filtered || (!outside && (side < SIDE_ERROR || wide != narrow));
     return outside ? ivec2(1, 0) : ivec2(wide) + t.low.x;

@@ -34,15 +34,8 @@ ivec2 rows_of_step(ExactTriangle t, RowSteps steps, int step) {
     if (!t.filtered) return all;
     const int origin = steps.along_z ? t.low.y : t.low.z;
     const float along = float(step - (steps.along_z ? t.low.z : t.low.y));
-    const vec3 slope_along = steps.along_z ? t.side_z : t.side_y;
-    const vec3 slope_across = steps.along_z ? t.side_y : t.side_z;
-    // side * (y, z, 1) >= -SIDE_ERROR, and as much again for the roundings here.
-    const vec3 rest = slope_along * along + t.side_offset + 2.0 * SIDE_ERROR;
-    const vec3 bound = -rest / mix(slope_across, vec3(1.0), equal(slope_across, vec3(0.0)));
-    const vec3 slack = 0.01 + 1.0e-6 * abs(bound);
-    const vec3 low = mix(vec3(-FAR_AWAY), bound - slack, greaterThan(slope_across, vec3(0.0)));
-    const vec3 high = mix(vec3(FAR_AWAY), bound + slack, lessThan(slope_across, vec3(0.0)));
-    const vec2 range = vec2(ceil(max(max(low.x, low.y), low.z)), floor(min(min(high.x, high.y), high.z)));
+    const vec3 rest = (steps.along_z ? t.side_z : t.side_y) * along + t.side_offset;
+    const vec2 range = rows_inside_sides(steps.along_z ? t.side_y : t.side_z, rest);
     const vec2 limits = vec2(all - origin);
     return ivec2(max(range.x, limits.x), min(range.y, limits.y)) + origin;
 }
