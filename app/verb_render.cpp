@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -18,11 +19,12 @@
 #include "app/verbs.h"
 #include "base/error.h"
 #include "renderer/renderer.h"
+#include "shaders/interop/config.h"
 
 namespace cairn::app {
 namespace {
 
-constexpr int max_tree_resolution = 1 << 24;  // the lattice has no finer voxels
+constexpr int max_tree_resolution = 1 << MAX_RESOLUTION_BITS;
 constexpr int max_brick_pool_mib = 1 << 20;
 constexpr int measured_frames = 5;
 constexpr double measuring_ms = 2000.0;
@@ -43,6 +45,9 @@ renderer::Camera camera_of(const std::string& text) {
     const glm::dvec3 forward = camera.target - camera.eye;
     if (!(glm::dot(forward, forward) > 0.0)) {
         throw Error(Fault::usage, "--camera", "the eye and the target are the same point");
+    }
+    if (!std::isfinite(glm::dot(forward, forward))) {
+        throw Error(Fault::usage, "--camera", "the eye and the target are too far apart");
     }
     // Looking straight up or down, +Y is no way up.
     if (glm::length(glm::cross(glm::normalize(forward), camera.up)) < 1e-6) camera.up = {0.0, 0.0, -1.0};
@@ -101,7 +106,7 @@ void add_options(CLI::App& verb, Options& options) {
                                   options.tree.max_resolution),
                       [&options](const std::string& text) {
                           options.tree.max_resolution =
-                              parse_int("--max-resolution", text, 1, max_tree_resolution);
+                              parse_int("--max-resolution", text, options.tree.m, max_tree_resolution);
                       });
     add_parsed_option(
         verb, "--brick-pool", "MIB",

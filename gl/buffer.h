@@ -22,7 +22,7 @@ public:
     ///                `Limits::shader_storage_bytes` for what a shader must see whole.
     Buffer(std::size_t size_bytes, const std::string& name);
 
-    /// A buffer that holds a copy of `data`; at least one byte long, so that it can always be bound.
+    /// A buffer that holds a copy of `data`; at least 16 bytes long, so that it can always be bound.
     template <typename T>
     static Buffer of(std::span<const T> data, const std::string& name) {
         Buffer buffer(std::max<std::size_t>(data.size_bytes(), 16), name);

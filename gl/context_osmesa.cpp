@@ -52,7 +52,8 @@ public:
         // A default framebuffer must exist, but nothing here draws to it.
         const auto make = library_.function<OSMesaMakeCurrentFn*>("OSMesaMakeCurrent");
         if (make(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE) {
-            throw Error(Fault::context, "OSMesa", "the context cannot be made current");
+            throw Error(Fault::context, "OSMesa", "the context cannot be made current",
+                        "choose --context egl");
         }
     }
     [[nodiscard]] std::string_view backend() const override { return "osmesa"; }

@@ -26,7 +26,10 @@ public:
     template <typename Function>
     [[nodiscard]] Function function(const char* name) const {
         void* const address = dlsym(handle_, name);
-        if (address == nullptr) throw Error(Fault::context, name, "missing in the installed library");
+        if (address == nullptr) {
+            throw Error(Fault::context, name, "missing in the installed library",
+                        "update the library, or choose another --context");
+        }
         return reinterpret_cast<Function>(address);
     }
 

@@ -44,7 +44,8 @@ void ShaderSource::append(std::string_view name, const std::string& from, Resolv
     if (!text) {
         throw Error(Fault::input, from.empty() ? std::string("shader") : from,
                     fmt::format("there is no shader file \"{}\"{}", name,
-                                folder_ ? " in " + folder_->string() : std::string()));
+                                folder_ ? " in " + folder_->string() : std::string()),
+                    folder_ ? "name the shaders/ folder of the sources" : "");
     }
     const std::size_t index = out.files.size();
     out.files.emplace_back(name);

@@ -1,8 +1,8 @@
 #include "gl/window.h"
 
-#define GLFW_INCLUDE_NONE
 #include <string>
 
+#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
 #include "base/error.h"
