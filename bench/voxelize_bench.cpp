@@ -67,7 +67,7 @@ public:
     }
 
     /// Milliseconds from an idle driver to an idle driver.
-    double draw() const {
+    [[nodiscard]] double draw() const {
         glFinish();
         const auto start = std::chrono::steady_clock::now();
         glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
