@@ -20,6 +20,7 @@ Buffer::Buffer(std::size_t size_bytes, const std::string& name) : size_bytes_(si
     glObjectLabel(GL_BUFFER, id, GLsizei(std::min<std::size_t>(name.size(), 200)), name.data());
 }
 
+// NOLINTNEXTLINE(readability-make-member-function-const): the contents belong to the buffer
 void Buffer::write(std::size_t offset_bytes, const void* data, std::size_t size_bytes) {
     if (size_bytes == 0) return;
     glNamedBufferSubData(id(), GLintptr(offset_bytes), GLsizeiptr(size_bytes), data);
@@ -36,6 +37,7 @@ void Buffer::fill(std::uint32_t word) {
     fill(0, size_bytes_, word);
 }
 
+// NOLINTNEXTLINE(readability-make-member-function-const): the contents belong to the buffer
 void Buffer::fill(std::size_t offset_bytes, std::size_t size_bytes, std::uint32_t word) {
     if (size_bytes == 0) return;
     glClearNamedBufferSubData(id(), GL_R32UI, GLintptr(offset_bytes), GLsizeiptr(size_bytes), GL_RED_INTEGER,

@@ -14,8 +14,10 @@ public:
     explicit Handle(GLuint id) : id_(id) {}
     Handle(const Handle&) = delete;
     Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
-    Handle& operator=(Handle other) noexcept {
-        std::swap(id_, other.id_);
+    Handle& operator=(const Handle&) = delete;
+    Handle& operator=(Handle&& other) noexcept {
+        Handle taken(std::move(other));
+        std::swap(id_, taken.id_);
         return *this;
     }
     ~Handle() {

@@ -66,7 +66,8 @@ void gather(const voxelizer::Surface& one, int fine_level, int side, std::vector
                 if (!bits.at({x, y, z})) continue;
                 const ivec3 f = low + ivec3(x, y, z);
                 const ivec3 v = f / 4;
-                Gathered& g = all[std::size_t((v.z * side + v.y) * side + v.x)];
+                const int voxel = (v.z * side + v.y) * side + v.x;
+                Gathered& g = all[std::size_t(voxel)];
                 g.fine[f.x % 4][f.y % 4][f.z % 4] = true;
                 g.normal += normal;
             }
@@ -228,8 +229,10 @@ renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& vie
             if (alpha > 0.0) {
                 dvec3 normal = glm::length(hit.normal) < 1e-6 ? -direction : glm::normalize(hit.normal);
                 const double away = glm::dot(normal, direction);
-                if (away > SILHOUETTE_BEND) normal = -normal;
-                else if (away > 0.0) normal = glm::normalize(normal - away * direction);
+                if (away > SILHOUETTE_BEND)
+                    normal = -normal;
+                else if (away > 0.0)
+                    normal = glm::normalize(normal - away * direction);
                 const dvec3 point = eye + direction * hit.depth;
                 auto to_light = [&](const dvec3& from) {
                     return view.light.positional ? glm::normalize(place(view.light.position) - from)

@@ -141,10 +141,12 @@ BrickMaker::BrickMaker(const renderer::TreeShape& shape, const voxelizer::Surfac
 
 std::vector<ProducedBrick> BrickMaker::produce(const std::vector<renderer::Tile>& tiles) {
     std::vector<renderer::BrickRequest> requests;
+    requests.reserve(tiles.size());
     for (const renderer::Tile& tile : tiles)
         requests.push_back({tile, int(requests.size())});
     producer_.produce(requests, pool_);
     std::vector<ProducedBrick> bricks;
+    bricks.reserve(tiles.size());
     for (const renderer::BrickRequest& request : requests)
         bricks.push_back(read_brick(pool_, shape_, request.slot));
     return bricks;

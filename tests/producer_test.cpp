@@ -38,6 +38,7 @@ interop::SurfaceMaterial colored(const glm::vec3& color) {
 voxelizer::Surface random_surface(int count, bool has_color, std::uint32_t seed) {
     Random random(seed);
     std::vector<LatticeTriangle> triangles;
+    triangles.reserve(std::size_t(count));
     for (int i = 0; i < count; ++i)
         triangles.push_back(random_triangle(random, lattice_side >> random.between(4, 12)));
     voxelizer::Surface surface = lattice_surface(triangles, 4096);
@@ -106,6 +107,7 @@ TEST_P(SurfaceProducerTest, BricksHoldExactlyTheOccupiedVoxelsBorderIncluded) {
 TEST_P(SurfaceProducerTest, NeighboursAgreeOnTheTexelsTheyShare) {
     const voxelizer::Surface surface = random_surface(400, GetParam().has_color, 43);
     std::vector<Tile> tiles;
+    tiles.reserve(8);
     for (int i = 0; i < 8; ++i)
         tiles.push_back({1, glm::ivec3(i % 2, i / 2 % 2, i / 4)});
     BrickMaker maker(shape(), surface, 16);
@@ -149,6 +151,7 @@ TEST_P(SurfaceProducerTest, TileHasTheSameTexelsAloneAndAmongHundreds) {
     const int count = GetParam().m == 8 ? 1000 : GetParam().m == 16 ? 200 : 60;
     Random random(45);
     std::vector<Tile> tiles;
+    tiles.reserve(std::size_t(count));
     for (int i = 0; i < count; ++i)
         tiles.push_back(tile_near_vertex(random, shape(), surface, int(random.between(1, 2))));
     BrickMaker maker(shape(), surface, count * 5 / 4);

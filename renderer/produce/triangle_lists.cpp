@@ -57,7 +57,8 @@ void TriangleLists::split(const Tile& parent, const std::vector<std::uint32_t>& 
         for (int z = from.z; z <= to.z; ++z) {
             for (int y = from.y; y <= to.y; ++y) {
                 for (int x = from.x; x <= to.x; ++x) {
-                    children[std::size_t(x + n * (y + n * z))].push_back(triangle);
+                    const int child = x + n * (y + n * z);
+                    children[std::size_t(child)].push_back(triangle);
                 }
             }
         }
