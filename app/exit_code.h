@@ -25,6 +25,8 @@ enum class ExitCode : int {
             return ExitCode::context;
         case Fault::memory:
             return ExitCode::memory;
+        case Fault::internal:
+            break;
     }
     return ExitCode::internal;
 }

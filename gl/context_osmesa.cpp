@@ -11,7 +11,8 @@ namespace {
 class OsmesaContext final : public Context {
 public:
     explicit OsmesaContext(bool debug)
-        : library_({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6") {
+        : library_({"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"}, "libosmesa6"),
+          destroy_(library_.function<OSMesaDestroyContextFn*>("OSMesaDestroyContext")) {
         const std::array<int, 11> attributes = {osmesa_format,
                                                 osmesa_rgba,
                                                 osmesa_depth_bits,
@@ -38,7 +39,7 @@ public:
                                library_.function<OSMesaGetProcAddressFn*>("OSMesaGetProcAddress")),
                            debug);
         } catch (...) {
-            destroy();
+            destroy_(context_);
             throw;
         }
     }
@@ -46,7 +47,7 @@ public:
     OsmesaContext& operator=(const OsmesaContext&) = delete;
     OsmesaContext(OsmesaContext&&) = delete;
     OsmesaContext& operator=(OsmesaContext&&) = delete;
-    ~OsmesaContext() override { destroy(); }
+    ~OsmesaContext() override { destroy_(context_); }
 
     void make_current() override {
         // A default framebuffer must exist, but nothing here draws to it.
@@ -59,9 +60,8 @@ public:
     [[nodiscard]] std::string_view backend() const override { return "osmesa"; }
 
 private:
-    void destroy() { library_.function<OSMesaDestroyContextFn*>("OSMesaDestroyContext")(context_); }
-
     DynamicLibrary library_;
+    OSMesaDestroyContextFn* destroy_;
     OSMesaContext context_ = nullptr;
     std::array<unsigned char, 4> pixel_{};
 };

@@ -54,7 +54,8 @@ ShaderHandle compile(GLenum stage, const ShaderSource& source, std::string_view 
     glGetShaderInfoLog(shader.id(), GLsizei(log.size()), nullptr, log.data());
     log.resize(log.find('\0') == std::string::npos ? log.size() : log.find('\0'));
     throw Error(Fault::context, fmt::format("shader {}", name),
-                fmt::format("did not compile on \"{}\"{}", driver_name(), with_file_names(log, resolved)));
+                fmt::format("did not compile on \"{}\"{}", driver_name(), with_file_names(log, resolved)),
+                "update the driver, or choose another --context");
 }
 
 Program link(std::initializer_list<const ShaderHandle*> shaders, std::string_view name) {

@@ -36,22 +36,28 @@ voxelizer::Surface flatten(const scenes::Scene& scene, const scenes::Snapshot& s
 /// explain.
 void check(const View& view) {
     const Camera& camera = view.camera;
-    auto fail = [](const std::string& what) { throw Error(Fault::usage, "view", what); };
+    auto fail = [](const std::string& what, const std::string& way_out) {
+        throw Error(Fault::usage, "view", what, way_out);
+    };
     if (view.width < 1 || view.height < 1 || view.width > 16384 || view.height > 16384) {
-        fail(fmt::format("a picture of {} x {} pixels is not between 1 and 16384 a side", view.width,
-                         view.height));
+        fail(fmt::format("a picture of {} x {} pixels", view.width, view.height),
+             "each side is between 1 and 16384");
     }
-    if (!(camera.yfov > 0.0 && camera.yfov < 3.14159))
-        fail("the field of view is not between 0 and 180 degrees");
-    if (!(view.pixel_error > 0.0)) fail("the pixel error is not positive");
+    if (!(camera.yfov > 0.0 && camera.yfov < 3.14159)) {
+        fail("the field of view is not between 0 and 180 degrees", "45 degrees suit most scenes");
+    }
+    if (!(view.pixel_error > 0.0)) fail("the pixel error is not positive", "1 is the default");
     const glm::dvec3 forward = camera.target - camera.eye;
     const double length = glm::length(forward);
-    if (!std::isfinite(length) || length == 0.0) fail("the camera looks at where it stands");
+    if (!std::isfinite(length)) fail("the camera or its target is not finite", "use finite coordinates");
+    if (length == 0.0) fail("the camera looks at where it stands", "move its target away from it");
     const double side = glm::length(glm::cross(forward / length, camera.up));
-    if (!std::isfinite(side) || side < 1e-9) fail("the camera's up direction is the one it looks along");
+    if (!std::isfinite(side) || side < 1e-9) {
+        fail("the camera's up direction is the one it looks along", "choose another up direction");
+    }
     const glm::dvec3 light = view.light.positional ? view.light.position : view.light.towards;
     if (!std::isfinite(glm::length(light)) || (!view.light.positional && glm::length(light) == 0.0)) {
-        fail("the light has no direction");
+        fail("the light has no direction", "give it a finite one that is not zero");
     }
 }
 
@@ -68,9 +74,16 @@ interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, int
     // pixels.
     const double cone = 2.0 * half_height / view.height * view.pixel_error * std::sqrt(double(n));
 
+    // Far from the scene a float's step is many voxels: then rays start near the root cube, from the plane
+    // that the eye moved forward lies in.
+    const double side = grid.resolution.x;
+    const glm::dvec3 eye = (view.camera.eye - grid.origin) / grid.voxel_size;
+    const double distance = glm::dot(glm::dvec3(0.5 * side) - eye, forward);
+    const double skipped = distance > 3.0 * side ? distance - 2.0 * side : 0.0;
+
     interop::MarchView out{};
-    out.eye = glm::vec4(place(view.camera.eye), float(cone));
-    out.forward = glm::vec4(glm::vec3(forward), 0.0F);
+    out.eye = glm::vec4(glm::vec3(eye + forward * skipped), float(cone));
+    out.forward = glm::vec4(glm::vec3(forward), float(skipped));
     out.right = glm::vec4(glm::vec3(right * half_width), 0.0F);
     out.up = glm::vec4(glm::vec3(up * half_height), 0.0F);
     out.light = view.light.positional ? glm::vec4(place(view.light.position), 1.0F)
@@ -78,6 +91,11 @@ interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, int
     out.light_color = glm::vec4(view.light.color, view.light.ambient);
     out.background = glm::vec4(view.background, 0.0F);
     out.size_shadow = glm::ivec4(view.width, view.height, view.shadow == Shadow::hard ? 1 : 0, 0);
+    const auto finite = [](const glm::vec4& v) { return std::isfinite(glm::dot(v, glm::vec4(1.0F))); };
+    if (!finite(out.eye) || !finite(out.forward) || !finite(out.light)) {
+        throw Error(Fault::usage, "view", "the camera or the light is too far away for a float to tell",
+                    "bring it nearer to the scene");
+    }
     return out;
 }
 
@@ -99,6 +117,7 @@ struct Renderer::Parts {
           tree(shape, pool.slot_count(), options.node_pool_bytes, oracle.child_mask(Tile{})),
           marcher(shape, flat.has_color, shaders) {}
 
+    void converge(const std::function<void(double)>& progress, double pixels, double pixels_before);
     void serve(std::vector<std::uint32_t> queries);
     void subdivide(std::uint32_t entry);
 
@@ -167,6 +186,26 @@ void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
     tree.upload();
 }
 
+/// Passes of rays and what they ask for, in turn, until nothing is missing.
+void Renderer::Parts::converge(const std::function<void(double)>& progress, double pixels,
+                               double pixels_before) {
+    for (;;) {
+        const auto pass_start = Clock::now();
+        const PassResult pass = marcher.run_pass(round, tree, pool);
+        const auto pass_end = Clock::now();
+        statistics.march_ms += std::chrono::duration<double, std::milli>(pass_end - pass_start).count();
+        ++statistics.passes;
+        ++round;
+        tree.begin_round(round, pass.brick_stamps);
+        if (pass.done()) return;
+        serve(pass.queries);
+        statistics.produce_ms += milliseconds_since(pass_end);
+        const double waiting = pass.waiting_primary + 0.5 * pass.waiting_shadow;
+        const double band = double(marcher.band_pixels());
+        if (progress) progress((pixels_before + band - waiting) / pixels);
+    }
+}
+
 Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
     check(view);
     Parts& parts = *parts_;
@@ -177,23 +216,21 @@ Image Renderer::render(const View& view, const std::function<void(double)>& prog
 
     interop::MarchView marched = march_view(view, parts.grid, parts.shape.n);
     marched.surface_color = glm::vec4(parts.uniform_color, 1.0F);
-    parts.marcher.begin_frame(marched, parts.tree, parts.pool);
     const double pixels = double(view.width) * view.height;
-    for (;;) {
-        const auto pass_start = Clock::now();
-        const PassResult pass = parts.marcher.run_pass(parts.round, parts.tree, parts.pool);
-        const auto pass_end = Clock::now();
-        statistics.march_ms += std::chrono::duration<double, std::milli>(pass_end - pass_start).count();
-        ++statistics.passes;
-        ++parts.round;
-        parts.tree.begin_round(parts.round, pass.brick_stamps);
-        if (pass.done()) break;
-        parts.serve(pass.queries);
-        statistics.produce_ms += milliseconds_since(pass_end);
-        if (progress) progress(1.0 - (pass.waiting_primary + 0.5 * pass.waiting_shadow) / pixels);
+    const int band_rows = Marcher::band_rows(view.width, view.height);
+    Image image{view.width, view.height, {}};
+    for (int row = 0; row < view.height; row += band_rows) {
+        marched.band = glm::ivec4(row, std::min(band_rows, view.height - row), 0, 0);
+        parts.marcher.begin_frame(marched, parts.tree, parts.pool);
+        parts.converge(progress, pixels, double(view.width) * row);
+        std::vector<std::uint8_t> band = parts.marcher.read_image();
+        if (image.rgba.empty()) {
+            image.rgba = std::move(band);
+        } else {
+            image.rgba.insert(image.rgba.end(), band.begin(), band.end());
+        }
     }
 
-    Image image{view.width, view.height, parts.marcher.read_image()};
     statistics.milliseconds = milliseconds_since(start);
     statistics.bricks_evicted = parts.tree.counters().bricks_evicted - before.bricks_evicted;
     statistics.nodes_evicted = parts.tree.counters().nodes_evicted - before.nodes_evicted;

@@ -206,7 +206,7 @@ TEST_F(ProducedColor, AlphaMaskCutsSurfaceAway) {
     Sheets sheets;
     sheets.add(4.6, 0.0, 8.0, 0.0, 8.0, red);
     sheets.set_texture({{255, 255, 255, 255}, {255, 255, 255, 100}},
-                       MATERIAL_MASK_BIT | 2U << MATERIAL_WRAP_S_SHIFT);
+                       1U << MATERIAL_MASK_BIT | 2U << MATERIAL_WRAP_S_SHIFT);
     sheets.surface().has_mask = true;
     sheets.set_attributes([](interop::SurfaceAttributes& attributes, double x) {
         attributes.texcoord = {float(x / 7.0), 0.5F};  // the picture's second half begins at x = 3.5

@@ -11,6 +11,9 @@ namespace cairn::renderer {
 namespace {
 
 constexpr unsigned group_size = 64;
+/// Passes in a row in which rays only pause: a ray crosses fewer than 8 cells for each voxel across the root
+/// cube.
+constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / 16384 + 1;
 constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
 
 }  // namespace
@@ -21,14 +24,17 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource&
       view_(sizeof(interop::MarchView), "view"),
       queries_(query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t), "tile query buffer") {}
 
+int Marcher::band_rows(int width, int height) {
+    const std::size_t row_bytes = std::size_t(width) * sizeof(interop::RayState);
+    const std::size_t rows = gl::query_limits().shader_storage_bytes / row_bytes;
+    // Whole blocks of 8x8 pixels, so that bands cut no block that a whole picture would not.
+    return int(std::min<std::size_t>(std::max<std::size_t>(rows / 8 * 8, 8), std::size_t(height)));
+}
+
 void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool) {
-    size_ = glm::ivec2(view.size_shadow.x, view.size_shadow.y);
+    size_ = glm::ivec2(view.size_shadow.x, view.band.y);
     const auto pixels = std::size_t(size_.x) * std::size_t(size_.y);
     if (pixels > capacity_) {
-        if (pixels * sizeof(interop::RayState) > gl::query_limits().shader_storage_bytes) {
-            throw Error(Fault::memory, "picture", "its ray states pass the driver's buffer limit",
-                        "choose a smaller --size");
-        }
         rays_ = gl::Buffer(pixels * sizeof(interop::RayState), "ray states");
         lists_ = gl::Buffer(pixels * 4 * sizeof(std::uint32_t), "ray lists");
         image_ = gl::Buffer(pixels * sizeof(std::uint32_t), "picture");
@@ -42,6 +48,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     }
     view_.write(0, &view, sizeof(view));
     first_pass_ = true;
+    pauses_ = 0;
     waiting_primary_ = 0;
     waiting_shadow_ = 0;
 }
@@ -69,8 +76,11 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     list_side_ ^= 1;
 
     const interop::MarchCounters counters = read_counters();
-    if (counters.step_limit_hits != 0) {
-        throw Error(Fault::context, "ray-marcher", "a ray did not come to an end",
+    const bool waiting = counters.waiting_primary != 0 || counters.waiting_shadow != 0;
+    const bool stalled = waiting && counters.queries == 0 && counters.paused == 0 && primary == 0;
+    pauses_ = counters.paused != 0 && counters.queries == 0 ? pauses_ + 1 : 0;
+    if (stalled || pauses_ > most_pauses) {
+        throw Error(Fault::internal, "ray-marcher", "a ray did not come to an end",
                     "this is a fault of Cairn: please report the scene and the view");
     }
     PassResult result;

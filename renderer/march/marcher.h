@@ -16,7 +16,7 @@ namespace cairn::renderer {
 
 /// What one pass of rays came back with.
 struct PassResult {
-    std::uint32_t waiting_primary = 0;        ///< rays that missed a tile
+    std::uint32_t waiting_primary = 0;        ///< rays that missed a tile or paused
     std::uint32_t waiting_shadow = 0;         ///< the same, and shadow rays not yet started
     std::vector<std::uint32_t> queries;       ///< 2 * node entry + QUERY_*; each once
     std::vector<std::uint32_t> brick_stamps;  ///< one a slot: the last round whose rays used it
@@ -29,14 +29,22 @@ class Marcher {
 public:
     Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders);
 
-    /// Sets the frame; buffers grow when the picture does.
+    /// Rows of a picture that are marched at once: as many as the driver's largest buffer holds ray states
+    /// for.
+    [[nodiscard]] static int band_rows(int width, int height);
+
+    /// Sets the frame, or a band of it (`view.band`); buffers grow when the bands do.
     void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool);
 
-    /// Runs every waiting ray until it ends or misses a tile. `round` is a number that grows with each pass.
-    /// @throws Error when a ray hits the step limit: a fault of the marcher, never of the scene.
+    /// Runs every waiting ray until it ends, misses a tile, or has crossed so many cells that it pauses.
+    /// `round` is a number that grows with each pass.
+    /// @throws Error (Fault::internal) when rays wait though nothing is missing and none has paused, or pause
+    /// without end.
     [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool);
 
-    /// RGBA8, row 0 at the top.
+    [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
+
+    /// RGBA8, the band's first row first.
     [[nodiscard]] std::vector<std::uint8_t> read_image() const;
 
 private:
@@ -58,6 +66,7 @@ private:
     std::uint32_t waiting_primary_ = 0;
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;
+    int pauses_ = 0;     // passes in a row in which rays only paused
     int list_side_ = 0;  // which half of the lists is read
 };
 

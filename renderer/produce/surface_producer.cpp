@@ -10,8 +10,10 @@ namespace {
 constexpr std::size_t scratch_budget_bytes = std::size_t(24) << 20U;
 /// Pairs sent to the driver at once.
 constexpr std::size_t pair_capacity = std::size_t(1) << 18U;
-/// A triangle that crosses a whole brick is cut in pieces of this many slices, for threads to share.
-constexpr int slices_a_pair = 4;
+/// A triangle that crosses a whole brick is cut in pieces, for threads to share and because no thread may
+/// turn its loops too often (docs/decisions.md). A voxel takes a turn for itself, 16 for its rows, and 64
+/// more for an alpha mask.
+constexpr int turns_a_pair = 30000;
 constexpr unsigned group_size = 64;
 
 std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
@@ -52,21 +54,28 @@ void SurfaceProducer::produce(std::span<const BrickRequest> requests, const Bric
 void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
     for (auto& list : pairs_)
         list.clear();
+    const int side = shape_.m + 2;
+    const int rows = std::max(1, turns_a_pair / (side * (surface_.has_mask ? 81 : 17)));
+    const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
     for (std::size_t i = 0; i < requests.size(); ++i) {
         const Tile& tile = requests[i].tile;
         const int shift = LATTICE_BITS - shape_.voxel_level(tile.level);
-        const int low = tile.position.z * shape_.m - 1;  // first slice of the border
+        const glm::ivec2 low = glm::ivec2(tile.position.y, tile.position.z) * shape_.m - 1;  // of the border
         for (const std::uint32_t triangle : lists_.list(tile)) {
-            // Slice s is touched when [s, s + 1] meets the triangle's extent: one more on each side of whole
+            // Row r is touched when [r, r + 1] meets the triangle's extent: one more on each side of whole
             // numbers.
             const TriangleLists::Box& box = lists_.box(triangle);
-            const int first = std::max(((box.low.z - 1) >> shift) - low, 0);
-            const int last = std::min((box.high.z >> shift) - low, shape_.m + 1);
-            for (int slice = first; slice <= last; slice += slices_a_pair) {
-                const int count = std::min(slices_a_pair, last - slice + 1);
-                pairs_[triangle / SURFACE_CHUNK_TRIANGLES].push_back(
-                    {triangle % SURFACE_CHUNK_TRIANGLES,
-                     std::uint32_t(i) | std::uint32_t(slice) << 16U | std::uint32_t(count) << 24U});
+            const glm::ivec2 first = glm::max(((glm::ivec2(box.low.y, box.low.z) - 1) >> shift) - low, 0);
+            const glm::ivec2 last =
+                glm::min((glm::ivec2(box.high.y, box.high.z) >> shift) - low, shape_.m + 1);
+            for (int z = first.y; z <= last.y; z += step.y) {
+                for (int y = first.x; y <= last.x; y += step.x) {
+                    const auto y_count = std::uint32_t(std::min(step.x, last.x - y + 1));
+                    const auto z_count = std::uint32_t(std::min(step.y, last.y - z + 1));
+                    pairs_[triangle / SURFACE_CHUNK_TRIANGLES].push_back(
+                        {triangle % SURFACE_CHUNK_TRIANGLES, std::uint32_t(i),
+                         std::uint32_t(y) | y_count << 8U | std::uint32_t(z) << 16U | z_count << 24U});
+                }
             }
         }
     }
@@ -116,6 +125,8 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     };
     run(masks_, count * blocks);
     run(summarize_, count * ((blocks + 63) / 64));
+    glMemoryBarrier(
+        GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // rays of an earlier pass may still read evicted slots
     run(resolve_, count * side * side * side);
     // The next batch reuses the scratch; rays fetch the texels.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |

@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace cairn::renderer {
+namespace {
+
+/// What the map and the vector around a list take, in numbers.
+constexpr std::size_t entry_cost = 24;
+
+}  // namespace
 
 TriangleLists::TriangleLists(const TreeShape& shape, const voxelizer::Surface& surface,
                              std::size_t held_limit)
@@ -65,7 +71,8 @@ void TriangleLists::split(const Tile& parent, const std::vector<std::uint32_t>& 
     }
     for (int child = 0; child < shape_.child_count(); ++child) {
         std::vector<std::uint32_t>& list = children[std::size_t(child)];
-        held_ += list.size();
+        if (list.empty()) continue;
+        held_ += list.size() + entry_cost;
         list.shrink_to_fit();
         lists_[key_of(child_of(parent, n, child))] = std::move(list);
     }

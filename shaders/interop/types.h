@@ -53,20 +53,23 @@ struct BrickTile {
 };
 struct BrickPair {
     uint triangle;     // local to the bound surface chunk
-    uint tile_slices;  // tile in the batch | first z slice << 16 | slice count << 24
+    uint tile;         // in the batch
+    uint rows;         // first y | count of y << 8 | first z << 16 | count of z << 24, border included
 };
 
 // All lengths in voxels of the finest level, positions from the root cube's low corner.
 struct MarchView {
-    vec4 eye;              // w: width of a pixel's cone at distance 1
-    vec4 forward;          // unit
+    vec4 eye;              // moved forward to near the root cube, for the precision of floats; w: width of a pixel's
+                           // cone at distance 1
+    vec4 forward;          // unit; w: rays start this far from the eye, in the plane across it that `eye` lies in
     vec4 right;            // half the image's width at distance 1
     vec4 up;               // half the image's height at distance 1
     vec4 light;            // xyz: position, or unit direction to the light; w: 1 = positional
     vec4 light_color;      // w: ambient
     vec4 background;
     vec4 surface_color;    // base colour everywhere, when the pool holds none
-    ivec4 size_shadow;     // xy: pixels; z: 1 = trace shadow rays
+    ivec4 size_shadow;     // xy: pixels of the picture; z: 1 = trace shadow rays
+    ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone
 };
 
 // A ray between two passes. Primary: what it has gathered. Shadow: depth and color stay, `weight` becomes visibility.
@@ -80,14 +83,14 @@ struct MarchCounters {
     uint waiting_primary;
     uint waiting_shadow;
     uint queries;
-    uint step_limit_hits;  // rays stopped by the step limit: a fault, never ignored
+    uint paused;           // rays that used up the pass's turns and go on in the next
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(NodeEntry) == 16, "GLSL sees another layout");
 static_assert(sizeof(BrickTile) == 32, "GLSL sees another layout");
-static_assert(sizeof(BrickPair) == 8, "GLSL sees another layout");
-static_assert(sizeof(MarchView) == 144, "GLSL sees another layout");
+static_assert(sizeof(BrickPair) == 12, "GLSL sees another layout");
+static_assert(sizeof(MarchView) == 160, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
 static_assert(sizeof(MarchCounters) == 16, "GLSL sees another layout");
 static_assert(sizeof(SurfaceTriangle) == 16, "GLSL sees another layout");

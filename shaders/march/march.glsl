@@ -31,8 +31,9 @@
 #define SUMMARY_WORDS ((BLOCKS + 63) / 64)
 #define MASK_WORDS_A_SLOT (SUMMARY_WORDS + BLOCKS)
 
-// A ray meets at most three cells for each voxel across, and may leave a tile as often.
-#define STEP_LIMIT (8 * ROOT_SIDE)
+// Cells that a ray may cross in one pass. Past it the ray pauses between two tiles and goes on in the next pass, so that no
+// dispatch runs for long, and no thread turns its loops more often than a driver lets it.
+#define TURN_BUDGET 16384
 
 #define MARCH_DONE 0
 #define MARCH_MISSING 1
@@ -228,12 +229,13 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #define SKIM_ENDED 2     // the ray is done
 
 // Skips the empty cells of a brick.
-int skim(inout Ray ray, Place place) {
+int skim(inout Ray ray, Place place, inout int turns) {
     const int voxel_shift = place.tile_shift - M_SHIFT;
     const ivec3 tile = ray.voxel >> place.tile_shift;
     const int first_mask = place.slot * MASK_WORDS_A_SLOT + SUMMARY_WORDS;
     // A straight line crosses at most 3 M - 2 cells of a brick.
     for (int cell = 0; cell < 3 * BRICK_M; ++cell) {
+        ++turns;
         const ivec3 b = (ray.voxel >> voxel_shift) & (BRICK_M - 1);
         const ivec3 c = b >> 2;
         int empty = empty_block_shift(place.slot, place.summary, c);
@@ -256,27 +258,30 @@ int skim(inout Ray ray, Place place) {
 #define SEEK_MISSING 2
 
 // Brings the ray to its next occupied voxel: down the tree, over empty tiles, through bricks.
-int seek(inout Ray ray, inout Place place) {
-    for (int step = 0; step < STEP_LIMIT; ++step) {
+int seek(inout Ray ray, inout Place place, inout int turns) {
+    for (;;) {
         int empty_shift = 0;
         if (place.slot < 0) {
+            if (turns > TURN_BUDGET) {
+                atomicAdd(counters.paused, 1u);
+                return SEEK_MISSING;
+            }
+            turns += MAX_LEVEL + 1;
             const int descent = descend(ray, place, empty_shift);
             if (descent == DESCENT_MISSING) return SEEK_MISSING;
         }
         if (place.slot < 0) {
             if (!step_over(ray, empty_shift)) return SEEK_DONE;
         } else {
-            const int skimmed = skim(ray, place);
+            const int skimmed = skim(ray, place, turns);
             if (skimmed == SKIM_OCCUPIED) return SEEK_OCCUPIED;
             if (skimmed == SKIM_ENDED) return SEEK_DONE;
             place.slot = -1;
         }
     }
-    atomicAdd(counters.step_limit_hits, 1u);
-    return SEEK_DONE;
 }
 
-// Marches until the ray is done, or until it misses a tile: then it has asked for it, and stands where it resumes.
+// Marches until the ray is done, or until it misses a tile or pauses: then it stands where it resumes.
 //
 // Threads that run side by side all pay for what any of them does in an innermost loop, so the loops are nested by how
 // seldom their work is needed: an occupied voxel, a tile, an empty cell.
@@ -285,8 +290,10 @@ int march(inout Ray ray) {
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
     place.summary = uvec2(0u);
-    for (int voxel = 0; voxel < STEP_LIMIT; ++voxel) {
-        const int found = seek(ray, place);
+    int turns = 0;
+    for (;;) {
+        ++turns;
+        const int found = seek(ray, place, turns);
         if (found != SEEK_OCCUPIED) return found == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
         const int voxel_shift = place.tile_shift - M_SHIFT;
         const ivec3 tile = ray.voxel >> place.tile_shift;
@@ -304,8 +311,6 @@ int march(inout Ray ray) {
         if (!visit(ray, s) || !goes_on) return MARCH_DONE;
         if (any(notEqual(ray.voxel >> place.tile_shift, tile))) place.slot = -1;
     }
-    atomicAdd(counters.step_limit_hits, 1u);
-    return MARCH_DONE;
 }
 
 // What is left of `transmittance` behind a voxel. Voxels of one surface cover different parts of a pixel, so their

@@ -36,10 +36,10 @@ bool visit(inout Ray ray, Sample s) {
 }
 
 // Is there light to be stopped on its way to this point?
-bool needs_shadow_ray(vec3 direction) {
+bool needs_shadow_ray(PixelRay seen) {
     if (view.size_shadow.z == 0 || state.color.a > 1.0 - 1.0 / 512.0) return false;
-    const vec3 point = view.eye.xyz + direction * state.normal_depth.w;
-    return dot(facing_normal(state, direction), direction_to_light(point)) > 0.0;
+    const vec3 point = seen.origin + seen.direction * state.normal_depth.w;
+    return dot(facing_normal(state, seen.direction), direction_to_light(point)) > 0.0;
 }
 
 void main() {
@@ -50,14 +50,14 @@ void main() {
         const int blocks = (view.size_shadow.x + 7) / 8;
         const int block = int(i / 64u);
         pixel = ivec2(block % blocks, block / blocks) * 8 + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
-        if (any(greaterThanEqual(pixel, view.size_shadow.xy))) return;
+        if (pixel.x >= view.size_shadow.x || pixel.y >= view.band.y) return;
     } else {
         const int p = int(lists[list_in + i]);
         pixel = ivec2(p % view.size_shadow.x, p / view.size_shadow.x);
     }
     const uint index = uint(pixel.y * view.size_shadow.x + pixel.x);
-    const vec3 direction = pixel_direction(pixel);
-    Ray ray = make_ray(view.eye.xyz, direction, 1e30, 0.0, view.eye.w);
+    const PixelRay seen = pixel_ray(pixel);
+    Ray ray = make_ray(seen.origin, seen.direction, 1e30, view.eye.w * seen.skipped, view.eye.w);
 
     bool inside = true;
     if (first_pass) {
@@ -81,7 +81,7 @@ void main() {
             state.color.rgb /= 1.0 - state.color.a;
             state.color.a = 0.0;
         }
-        if (needs_shadow_ray(direction)) {
+        if (needs_shadow_ray(seen)) {
             state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
             rays[index] = state;
             lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;

@@ -6,10 +6,23 @@ vec3 srgb_from_linear(vec3 c) {
     return mix(12.92 * clamped, 1.055 * pow(clamped, vec3(1.0 / 2.4)) - 0.055, greaterThan(clamped, vec3(0.0031308)));
 }
 
-// Direction of a pixel's ray, unit.
-vec3 pixel_direction(ivec2 pixel) {
-    const vec2 place = (vec2(pixel) + 0.5) / vec2(view.size_shadow.xy) * 2.0 - 1.0;
-    return normalize(view.forward.xyz + place.x * view.right.xyz - place.y * view.up.xyz);
+// Where a pixel's ray starts and goes; distances along it count from `origin`, which is `skipped` from the eye.
+struct PixelRay {
+    vec3 origin;
+    vec3 direction;  // unit
+    float skipped;
+};
+
+// `pixel` in the band.
+PixelRay pixel_ray(ivec2 pixel) {
+    const vec2 place = (vec2(pixel + ivec2(0, view.band.x)) + 0.5) / vec2(view.size_shadow.xy) * 2.0 - 1.0;
+    const vec3 across = place.x * view.right.xyz - place.y * view.up.xyz;
+    const float slant = length(view.forward.xyz + across);
+    PixelRay ray;
+    ray.origin = view.eye.xyz + view.forward.w * across;
+    ray.direction = (view.forward.xyz + across) / slant;
+    ray.skipped = view.forward.w * slant;
+    return ray;
 }
 
 vec3 direction_to_light(vec3 point) {
@@ -31,9 +44,9 @@ void write_pixel(ivec2 pixel, RayState state, float visibility) {
     const float alpha = 1.0 - state.color.a;
     vec3 color = view.background.rgb;
     if (alpha > 0.0) {
-        const vec3 direction = pixel_direction(pixel);
-        const vec3 normal = facing_normal(state, direction);
-        const vec3 point = view.eye.xyz + direction * state.normal_depth.w;
+        const PixelRay seen = pixel_ray(pixel);
+        const vec3 normal = facing_normal(state, seen.direction);
+        const vec3 point = seen.origin + seen.direction * state.normal_depth.w;
         const float facing = max(dot(normal, direction_to_light(point)), 0.0);
         const float sky = view.light_color.w * (0.75 + 0.25 * normal.y);
         const vec3 light = view.light_color.rgb * (sky + (1.0 - view.light_color.w) * facing * visibility);

@@ -39,11 +39,11 @@ void main() {
     const ivec2 pixel = ivec2(int(index) % view.size_shadow.x, int(index) / view.size_shadow.x);
     RayState state = rays[index];
 
-    const vec3 direction = pixel_direction(pixel);
-    const float width = view.eye.w * state.normal_depth.w;
+    const PixelRay seen = pixel_ray(pixel);
+    const float width = view.eye.w * (seen.skipped + state.normal_depth.w);
     const float side = voxel_side(width);
-    receiver = view.eye.xyz + direction * state.normal_depth.w;
-    receiver_normal = facing_normal(state, direction);
+    receiver = seen.origin + seen.direction * state.normal_depth.w;
+    receiver_normal = facing_normal(state, seen.direction);
     const vec3 to_light = direction_to_light(receiver);
     // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
     // at a low angle stays among them for longer.

@@ -1,4 +1,4 @@
-// One thread is one pair: a triangle, and some slices of a tile that it may touch. It marks the finer voxels of each
+// One thread is one pair: a triangle, and some rows of a tile that it may touch. It marks the finer voxels of each
 // brick voxel, exactly as the voxelizer would, and adds the surface's attributes there.
 // defines: BRICK_M=16 HAS_COLOR=1 HAS_MASK=1
 // defines: BRICK_M=16 HAS_COLOR=1 HAS_MASK=0
@@ -71,7 +71,7 @@ uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v) {
                            all(lessThanEqual(row, fine.high.yz));
         uint bits = meets ? (0xFu << uint(span.x & 3)) & (0xFu >> uint(3 - span.y & 3)) : 0u;
 #if HAS_MASK
-        if ((s.material.flags & uint(MATERIAL_MASK_BIT)) != 0u) {
+        if ((s.material.flags >> MATERIAL_MASK_BIT & 1u) != 0u) {
             for (int x = 0; x < 4; ++x) {
                 const vec3 centre = (vec3(4 * v.x + x, row) + 0.5) * float(1 << fine.shift);
                 if (alpha_at(point_under(s, centre), s.material) < s.material.alpha_cutoff) bits &= ~(1u << x);
@@ -127,9 +127,9 @@ void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= pair_count) return;
     const uint triangle = pairs[i].triangle;
-    const uint tile_index = pairs[i].tile_slices & 0xFFFFu;
-    const int first_slice = int(pairs[i].tile_slices >> 16 & 0xFFu);
-    const int slice_count = int(pairs[i].tile_slices >> 24);
+    const uint tile_index = pairs[i].tile;
+    const ivec2 first_row = ivec2(pairs[i].rows & 0xFFu, pairs[i].rows >> 16 & 0xFFu);
+    const ivec2 row_count = ivec2(pairs[i].rows >> 8 & 0xFFu, pairs[i].rows >> 24);
     const BrickTile tile = tiles[tile_index];
     const int shift = tile.low_shift.w;
 
@@ -142,8 +142,8 @@ void main() {
     const Patch s = make_patch(corners.xyz, surface_materials[corners.w], a, b, c);
 
     const ivec3 region_low = tile.low_shift.xyz - 1;
-    const ivec3 low = max(coarse.low, region_low + ivec3(0, 0, first_slice));
-    const ivec3 high = min(coarse.high, region_low + ivec3(SIDE - 1, SIDE - 1, first_slice + slice_count - 1));
+    const ivec3 low = max(coarse.low, region_low + ivec3(0, first_row));
+    const ivec3 high = min(coarse.high, region_low + ivec3(SIDE - 1, first_row + row_count - 1));
     if (any(greaterThan(low, high))) return;
     // One loop over rows and voxels alike: threads that run side by side wait for the longest, not for the product of
     // the longest of each nested loop.
