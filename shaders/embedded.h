@@ -5,7 +5,8 @@
 
 namespace cairn::shaders {
 
-/// One file of this folder as it was when the library was built; the name is relative to it ("march/march.glsl").
+/// One file of this folder as it was when the library was built; the name is relative to it
+/// ("march/march.glsl").
 struct EmbeddedFile {
     std::string_view name;
     std::string_view text;

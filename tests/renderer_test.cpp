@@ -188,8 +188,8 @@ TEST_F(RendererTest, EmptySceneIsBackgroundAndProducesNothing) {
 }
 
 TEST_F(RendererTest, ShadowOfASquareLiesWhereGeometryPutsIt) {
-    // A unit square one above a floor, light straight down, and a camera lower than the square: the floor is dark
-    // exactly under it.
+    // A unit square one above a floor, light straight down, and a camera lower than the square: the floor is
+    // dark exactly under it.
     const scenes::Scene scene = square_over_floor();
     View view;
     view.width = view.height = 300;
@@ -249,6 +249,72 @@ TEST_F(RendererTest, FlatColoursComeThroughUnchanged) {
             << "channel " << channel;
     }
     EXPECT_EQ(image.rgba[std::size_t(20 * 40 + 20) * 4 + 3], 255);
+}
+
+TEST_F(RendererTest, AlphaMaskCutsThePictureWhereTheTextureSaysSo) {
+    // A square whose picture's right half is cut away, seen from above: left half white, right half
+    // background.
+    scenes::Scene scene = sheet(glm::vec4(1.0F));
+    scenes::Image image{"halves", 2, 1, {255, 255, 255, 255, 255, 255, 255, 0}};
+    scene.images.push_back(image);
+    scene.textures.push_back({0, scenes::Wrap::clamp_to_edge, scenes::Wrap::clamp_to_edge});
+    scene.materials[0].texture = 0;
+    scene.materials[0].alpha_mode = scenes::AlphaMode::mask;
+    scenes::Primitive& square = scene.meshes[0].primitives[0];
+    for (const glm::vec3& p : square.positions)
+        square.texcoords.emplace_back(0.5F + 0.5F * p.x, 0.5F);
+    View view;
+    view.width = view.height = 64;
+    view.camera.eye = {0.0, 3.0, 0.0};
+    view.camera.up = {0.0, 0.0, -1.0};
+    const Image picture = make_renderer(scene, {}).render(view);
+    const double half = 64.0 / (2.0 * std::tan(0.5 * view.camera.yfov) * 3.0);  // pixels across a unit
+    for (int x = 0; x < 64; ++x) {
+        const double place = (x + 0.5 - 32.0) / half;
+        if (std::abs(place) < 0.05 || std::abs(std::abs(place) - 1.0) < 0.05)
+            continue;  // the edges' own pixels
+        const bool surface = place > -1.0 && place < 0.0;
+        EXPECT_EQ(picture.rgba[std::size_t(32 * 64 + x) * 4 + 3], surface ? 255 : 0) << "x = " << place;
+    }
+}
+
+TEST_F(RendererTest, LongRaysPauseAndStillEndWithTheSamePicture) {
+    // Rays just above a sheet cross thousands of tiles that are not empty: more than one pass may walk.
+    const scenes::Scene scene = sheet(glm::vec4(1.0F));
+    View view;
+    view.width = view.height = 2;
+    view.camera.eye = {-1.2, 1e-4, 0.0};
+    view.camera.target = {1.2, 1e-4, 0.0};
+    view.camera.yfov = 1e-7;
+    view.shadow = renderer::Shadow::none;
+    Renderer renderer = make_renderer(scene, {.max_resolution = 65536});
+    const Image first = renderer.render(view);
+    const Image second = renderer.render(view);
+    EXPECT_EQ(renderer.statistics().bricks_produced, 0U);
+    EXPECT_GT(renderer.statistics().passes, 1) << "no ray was long enough to pause";
+    EXPECT_EQ(first.rgba, second.rgba);
+}
+
+TEST_F(RendererTest, PictureLargerThanTheDriversBufferIsMarchedInBands) {
+    const scenes::Scene scene = ball_over_floor();
+    Renderer renderer = make_renderer(scene, {.max_resolution = 64});
+    const View small = finest_view(scene, 800, 1000);
+    View large = small;
+    large.width *= 2;
+    large.height *= 2;  // 3.2 million ray states of 48 bytes: more than 128 MiB
+    const Image coarse = renderer.render(small);
+    const Image fine = renderer.render(large);
+    ASSERT_EQ(fine.rgba.size(), 16U * 800U * 1000U);
+    // The same voxels in both: away from their edges the larger picture repeats the smaller one's pixels.
+    std::size_t far_off = 0;
+    for (int y = 0; y < 1000; ++y) {
+        for (int x = 0; x < 800; ++x) {
+            const int a = coarse.rgba[std::size_t(y * 800 + x) * 4 + 1];
+            const int b = fine.rgba[std::size_t(2 * y * 1600 + 2 * x) * 4 + 1];
+            far_off += std::abs(a - b) > 12 ? 1 : 0;
+        }
+    }
+    EXPECT_LT(far_off, 800U * 1000U / 50U);
 }
 
 TEST_F(RendererTest, CamerasInsideOnFacesAndAlongAxesComeToAnEnd) {
