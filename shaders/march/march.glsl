@@ -8,6 +8,7 @@
 #include "interop/config.h"
 #include "interop/bindings.h"
 #include "interop/types.h"
+#include "pool/brick_masks.glsl"
 
 #if TREE_N == 4
 #define N_SHIFT 2
@@ -26,10 +27,6 @@
 
 #define ROOT_SHIFT (M_SHIFT + N_SHIFT * MAX_LEVEL)
 #define ROOT_SIDE (1 << ROOT_SHIFT)
-#define BLOCKS_A_SIDE (BRICK_M / 4)
-#define BLOCKS (BLOCKS_A_SIDE * BLOCKS_A_SIDE * BLOCKS_A_SIDE)
-#define SUMMARY_WORDS ((BLOCKS + 63) / 64)
-#define MASK_WORDS_A_SLOT (SUMMARY_WORDS + BLOCKS)
 
 // Cells that a ray may cross in one pass. Past it the ray pauses between two tiles and goes on in the next pass, so that no
 // dispatch runs for long, and no thread turns its loops more often than a driver lets it.

@@ -2,16 +2,13 @@
 // defines: BRICK_M=16 HAS_COLOR=1
 // defines: BRICK_M=8 HAS_COLOR=0
 #include "produce/scratch.glsl"
+#include "pool/brick_masks.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(std430, binding = SSBO_BRICK_MASKS) writeonly buffer MaskBlock { uvec2 brick_masks[]; };
 
 uniform uint tile_count;
-
-#define BLOCKS_A_SIDE (BRICK_M / 4)
-#define BLOCKS (BLOCKS_A_SIDE * BLOCKS_A_SIDE * BLOCKS_A_SIDE)
-#define SUMMARY_WORDS ((BLOCKS + 63) / 64)
 
 void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
@@ -32,5 +29,5 @@ void main() {
         }
     }
     const uint slot = uint(tiles[tile].slot_texel.w);
-    brick_masks[slot * uint(SUMMARY_WORDS + BLOCKS) + uint(SUMMARY_WORDS) + uint(block)] = mask;
+    brick_masks[slot * uint(MASK_WORDS_A_SLOT) + uint(SUMMARY_WORDS) + uint(block)] = mask;
 }

@@ -2,6 +2,7 @@
 // defines: BRICK_M=16 HAS_COLOR=1
 // defines: BRICK_M=8 HAS_COLOR=0
 #include "produce/scratch.glsl"
+#include "pool/brick_masks.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -9,16 +10,12 @@ layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[
 
 uniform uint tile_count;
 
-#define BLOCKS_A_SIDE (BRICK_M / 4)
-#define BLOCKS (BLOCKS_A_SIDE * BLOCKS_A_SIDE * BLOCKS_A_SIDE)
-#define SUMMARY_WORDS ((BLOCKS + 63) / 64)
-
 void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= tile_count * uint(SUMMARY_WORDS)) return;
     const uint slot = uint(tiles[i / uint(SUMMARY_WORDS)].slot_texel.w);
     const uint word = i % uint(SUMMARY_WORDS);
-    const uint first = slot * uint(SUMMARY_WORDS + BLOCKS);
+    const uint first = slot * uint(MASK_WORDS_A_SLOT);
     uvec2 summary = uvec2(0u);
     for (uint bit = 0u; bit < 64u && word * 64u + bit < uint(BLOCKS); ++bit) {
         const uvec2 mask = brick_masks[first + uint(SUMMARY_WORDS) + word * 64u + bit];
