@@ -30,8 +30,9 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-std::string measure(const std::string& name, int size) {
-    const scenes::Scene scene = scenes::load(name);
+std::string measure(const std::string& path, int size) {
+    const std::string name = std::filesystem::path(path).filename().string();
+    const scenes::Scene scene = scenes::load(path);
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     renderer::Renderer ours(scene, snapshot);
     renderer::View view;
