@@ -11,7 +11,6 @@ Limits query_limits() {
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &storage);
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits.texture_3d_size);
-    glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &limits.work_group_count);
     limits.shader_storage_bytes = std::size_t(storage);
     limits.texture_buffer_texels = std::size_t(texels);
     return limits;

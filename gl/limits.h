@@ -9,7 +9,6 @@ struct Limits {
     std::size_t shader_storage_bytes = 0;  ///< one shader storage block
     std::size_t texture_buffer_texels = 0;
     int texture_3d_size = 0;   ///< texels a side
-    int work_group_count = 0;  ///< along x
 };
 
 [[nodiscard]] Limits query_limits();

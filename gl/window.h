@@ -11,7 +11,7 @@ struct GLFWwindow;
 
 namespace cairn::gl {
 
-/// A window with an OpenGL 4.5 core context (GLFW). One thread makes and uses all windows, as GLFW asks.
+/// A window with an OpenGL 4.5 core context (GLFW). One at a time, on the main thread, as GLFW asks.
 class Window : public Context {
 public:
     /// The GLFW handle, for input callbacks.
