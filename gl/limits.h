@@ -8,7 +8,7 @@ namespace cairn::gl {
 struct Limits {
     std::size_t shader_storage_bytes = 0;  ///< one shader storage block
     std::size_t texture_buffer_texels = 0;
-    int texture_3d_size = 0;   ///< texels a side
+    int texture_3d_size = 0;  ///< texels a side
 };
 
 [[nodiscard]] Limits query_limits();
