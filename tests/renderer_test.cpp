@@ -317,6 +317,32 @@ TEST_F(RendererTest, PictureLargerThanTheDriversBufferIsMarchedInBands) {
     EXPECT_LT(far_off, 800U * 1000U / 50U);
 }
 
+TEST_F(RendererTest, FarCameraWithANarrowLensSeesWhatANearerOneSees) {
+    const scenes::Scene scene = ball_over_floor();
+    Renderer renderer = make_renderer(scene, {});
+    View view;
+    view.width = view.height = 100;
+    auto from = [&](double distance) {
+        view.camera.target = {0.0, 1.0, 0.0};
+        view.camera.eye = view.camera.target + glm::normalize(glm::dvec3(0.3, 0.4, 1.0)) * distance;
+        view.camera.yfov = 2.0 * std::atan(3.0 / distance);
+        return renderer.render(view);
+    };
+    const Difference difference = compare(from(1e3), from(1e6), 24);
+    EXPECT_LE(difference.pixels_over, 150U)
+        << difference.first;  // silhouettes: the rays differ by 0.1 degrees
+}
+
+TEST_F(RendererTest, LargeBricksHoldLargeTrianglesWhole) {
+    const scenes::Scene scene = scenes::make_builtin("cornell");
+    View view = finest_view(scene, 128, 128);
+    view.shadow = renderer::Shadow::none;
+    const Image small = make_renderer(scene, {.m = 16, .max_resolution = 256}).render(view);
+    const Image large = make_renderer(scene, {.m = 64, .max_resolution = 256}).render(view);
+    const Difference difference = compare(small, large, 1);
+    EXPECT_EQ(difference.pixels_over, 0U) << difference.first;
+}
+
 TEST_F(RendererTest, CamerasInsideOnFacesAndAlongAxesComeToAnEnd) {
     const scenes::Scene scene = ball_over_floor();
     const scenes::Bounds bounds = scenes::take_snapshot(scene).bounds;
@@ -370,6 +396,9 @@ TEST_F(RendererTest, ImpossibleTreesPoolsAndViewsAreRefusedWithAWayOut) {
     view = View{};
     view.camera.up = view.camera.target - view.camera.eye;
     EXPECT_THROW((void)renderer.render(view), Error);
+    view = View{};
+    view.camera.eye = {1e39, 0.0, 0.0};
+    EXPECT_THROW((void)renderer.render(view), Error) << "too far for a float";
     view = View{};
     view.width = 0;
     EXPECT_THROW((void)renderer.render(view), Error);

@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned group_size = 64;
 /// Passes in a row in which rays only pause: a ray crosses fewer than 8 cells for each voxel across the root
 /// cube.
-constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / 16384 + 1;
+constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
 constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 namespace cairn::renderer {
 
-/// Which of a fixed number of places to use next: a free one, else the one not used for longest
-/// (Crassin et al. 2008, section 4.3).
+/// Which of a fixed number of places are free, and when each was last used: what a cache needs to recycle the
+/// one not used for longest (Crassin et al. 2008, section 4.3).
 ///
 /// Time is counted in rounds: one round is one pass of rays and the production that follows it. What was
 /// given out or pinned in the current round is never taken away in it.

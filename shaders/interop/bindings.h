@@ -20,7 +20,7 @@
 // The producer's own (beside the surface's 0 to 4).
 #define SSBO_BRICK_PAIRS 5    // BrickPair: which triangle touches which tile of the batch
 #define SSBO_BRICK_TILES 6    // BrickTile: the tiles of the batch
-#define SSBO_BRICK_SCRATCH 7  // SCRATCH_* words a voxel of the batch
+#define SSBO_BRICK_SCRATCH 7  // masks, then sums, of every voxel of the batch (scratch.glsl)
 #define SSBO_BRICK_MASKS 0    // masks and summaries of the brick pool (resolve passes, which read no surface)
 #define IMAGE_BRICK_COLOR 0
 #define IMAGE_BRICK_NORMAL 1

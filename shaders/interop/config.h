@@ -49,6 +49,10 @@
 #define QUERY_CHILDREN 0  // the node must be subdivided
 #define QUERY_BRICK 1     // the node's brick must be produced
 
+// Cells that a ray may cross in one pass. Past it the ray pauses between two tiles and goes on in the next pass, so that no
+// dispatch runs for long, and no thread turns its loops more often than a driver lets it.
+#define TURN_BUDGET 16384
+
 // Voxels across the root cube stay below this, because a ray state packs three coordinates in 63 bits.
 #define MAX_RESOLUTION_BITS 21
 

@@ -28,10 +28,6 @@
 #define ROOT_SHIFT (M_SHIFT + N_SHIFT * MAX_LEVEL)
 #define ROOT_SIDE (1 << ROOT_SHIFT)
 
-// Cells that a ray may cross in one pass. Past it the ray pauses between two tiles and goes on in the next pass, so that no
-// dispatch runs for long, and no thread turns its loops more often than a driver lets it.
-#define TURN_BUDGET 16384
-
 #define MARCH_DONE 0
 #define MARCH_MISSING 1
 

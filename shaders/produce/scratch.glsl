@@ -20,7 +20,7 @@
 #endif
 #define NORMAL_UNIT 511.0
 #define COLOR_UNIT 1023.0
-#define WEIGHT_LIMIT 1048576u      // more would overflow the sums: what comes later no longer changes the mean
+#define WEIGHT_LIMIT 1048576u      // more would overflow the sums: triangles that come later, in the threads' order, are left out
 
 layout(std430, binding = SSBO_BRICK_TILES) readonly buffer TileBlock { BrickTile tiles[]; };
 layout(std430, binding = SSBO_BRICK_SCRATCH) buffer ScratchBlock { uint scratch[]; };

@@ -1,5 +1,5 @@
-// One thread is one pair: a triangle, and some rows of a tile that it may touch. It marks the finer voxels of each
-// brick voxel, exactly as the voxelizer would, and adds the surface's attributes there.
+// One thread is one pair: a triangle, and some rows of a tile that it may touch. It finds the brick
+// voxels that the triangle meets, exactly as the voxelizer does, marks their finer voxels and adds its attributes.
 // defines: BRICK_M=16 HAS_COLOR=1 HAS_MASK=1
 // defines: BRICK_M=16 HAS_COLOR=1 HAS_MASK=0
 // defines: BRICK_M=8 HAS_COLOR=0 HAS_MASK=0
