@@ -10,21 +10,12 @@
 #include "voxelizer/voxelizer.h"
 
 namespace cairn::app {
-namespace {
-
-constexpr const char* only_method = "conservative";
-
-}  // namespace
 
 void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options) {
     add_grid_options(verb, options.grid);
-    add_parsed_option(verb, "--method", "NAME", "how voxels are found: conservative (the only one so far)",
-                      [](const std::string& name) {
-                          if (name == only_method) return;
-                          throw Error(Fault::usage, "--method",
-                                      fmt::format("there is no method \"{}\"", name),
-                                      fmt::format("{} is the only one so far", only_method));
-                      });
+    add_parsed_option(
+        verb, "--method", "NAME", "how voxels are found: conservative (the only one so far)",
+        [&options](const std::string& name) { options.method = voxelizer::method_named(name); });
     add_common_options(verb, options.common);
 }
 
@@ -49,10 +40,11 @@ Voxelization voxelize_input(const VoxelizationOptions& options, Report& report) 
     const double context_ms = watch.lap_ms();
     const voxelizer::GpuSurface on_gpu = voxelizer::upload(out.surface);
     const double upload_ms = watch.lap_ms();
-    voxelizer::Voxelizer voxelizer(options.common.driver.shaders);
+    const std::unique_ptr<voxelizer::Voxelizer> voxelizer =
+        voxelizer::make_voxelizer(options.method, options.common.driver.shaders);
     // Once for the driver, which compiles at the first use; once for the clock.
-    out.voxels = voxelizer.voxelize(on_gpu, out.region);
-    out.voxels = voxelizer.voxelize(on_gpu, out.region);
+    out.voxels = voxelizer->voxelize(on_gpu, out.region);
+    out.voxels = voxelizer->voxelize(on_gpu, out.region);
     driver.check();
 
     const voxelizer::Grid& grid = out.surface.grid;
@@ -61,9 +53,9 @@ Voxelization voxelize_input(const VoxelizationOptions& options, Report& report) 
     report.add("resolution", grid.resolution.x);
     report.add("origin", json_of(grid.origin));
     report.add("voxel_size", grid.voxel_size);
-    report.add("method", only_method);
+    report.add("method", std::string(voxelizer::name_of(options.method)));
     report.add("occupied", out.voxels.count());
-    report.add("milliseconds", voxelizer.last_milliseconds());
+    report.add("milliseconds", voxelizer->last_milliseconds());
     report.add("load_ms", load_ms);
     report.add("surface_ms", surface_ms);
     report.add("context_ms", context_ms);

@@ -7,6 +7,7 @@
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/grid.h"
 #include "voxelizer/surface.h"
+#include "voxelizer/voxelizer.h"
 
 namespace cairn::app {
 
@@ -14,6 +15,7 @@ namespace cairn::app {
 struct VoxelizationOptions {
     CommonOptions common;
     GridOptions grid;
+    voxelizer::Method method = voxelizer::Method::conservative;
 };
 void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options);
 

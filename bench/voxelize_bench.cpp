@@ -22,7 +22,7 @@
 #include "gl/program.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
-#include "voxelizer/voxelizer.h"
+#include "voxelizer/conservative_voxelizer.h"
 
 namespace {
 
@@ -142,7 +142,7 @@ std::string measure(const std::string& name, int resolution) {
         voxelizer::build_surface(scene, snapshot, voxelizer::grid_around(snapshot.bounds, resolution));
     const voxelizer::Region region = voxelizer::whole(surface.grid);
     const voxelizer::GpuSurface on_gpu = voxelizer::upload(surface);
-    voxelizer::Voxelizer voxelizer;
+    voxelizer::ConservativeVoxelizer voxelizer;
     const ThreeDirections raster(surface, resolution);
 
     const std::uint64_t occupied = voxelizer.voxelize(on_gpu, region).count();

@@ -14,8 +14,8 @@
 #include "renderer/produce/surface_producer.h"
 #include "renderer/produce/triangle_lists.h"
 #include "shaders/interop/config.h"
+#include "voxelizer/conservative_voxelizer.h"
 #include "voxelizer/surface.h"
-#include "voxelizer/voxelizer.h"
 
 namespace cairn::renderer {
 namespace {
@@ -126,7 +126,7 @@ struct Renderer::Parts {
     glm::vec3 uniform_color;
     voxelizer::GpuSurface surface;
     TriangleLists lists;
-    voxelizer::Voxelizer voxelizer;
+    voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle;
     SurfaceProducer producer;
     BrickPool pool;

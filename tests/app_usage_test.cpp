@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{voxelize({"-r", "8", "--bounds", "0,0,0,inf,1,1"}), "not finite"},
                       Wrong{voxelize({"-r", "8", "--bounds", "0,2,0,1,1,1"}),
                             "Y0 = 2 is not less than Y1 = 1"},
-                      Wrong{voxelize({"-r", "8", "--method", "slice-map"}), "conservative is the only one"},
+                      Wrong{voxelize({"-r", "8", "--method", "cubes"}), "choose one of: conservative"},
                       Wrong{voxelize({"-r", "8", "--context", "vulkan"}), "auto, osmesa or egl"},
                       Wrong{voxelize({"-r", "8", "--shader-dir", "/nowhere"}), "is not a folder"},
                       Wrong{voxelize({"-r", "8", "-o", "voxels.vdb"}), "what this verb writes ends in .npy"},

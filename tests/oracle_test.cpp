@@ -5,6 +5,7 @@
 #include "renderer/produce/surface_oracle.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
+#include "voxelizer/conservative_voxelizer.h"
 
 namespace cairn::renderer {
 namespace {
@@ -53,7 +54,7 @@ TEST_P(SurfaceOracleTest, MaskIsWhatADirectVoxelizationOfTheChildrenSays) {
     const voxelizer::Surface surface = random_surface(21);
     const voxelizer::GpuSurface uploaded = upload(surface);
     TriangleLists lists(shape, surface);
-    voxelizer::Voxelizer voxelizer;
+    voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle(shape, uploaded, voxelizer, lists);
     Random random(22);
     int part_full = 0;
@@ -76,7 +77,7 @@ TEST_P(SurfaceOracleTest, TileIsEmptyExactlyWhenAllItsChildrenAre) {
     const voxelizer::Surface surface = random_surface(23);
     const voxelizer::GpuSurface uploaded = upload(surface);
     TriangleLists lists(shape, surface);
-    voxelizer::Voxelizer voxelizer;
+    voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle(shape, uploaded, voxelizer, lists);
     Random random(24);
     for (int walk = 0; walk < 6; ++walk) {
@@ -101,7 +102,7 @@ TEST_P(SurfaceOracleTest, FinestTilesHaveNoChildren) {
     const voxelizer::Surface surface = random_surface(25);
     const voxelizer::GpuSurface uploaded = upload(surface);
     TriangleLists lists(shape, surface);
-    voxelizer::Voxelizer voxelizer;
+    voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle(shape, uploaded, voxelizer, lists);
     Random random(26);
     for (const auto& p : surface.chunks[0].positions) {
@@ -115,7 +116,7 @@ TEST_P(SurfaceOracleTest, EmptySurfaceHasEmptyTiles) {
     const voxelizer::Surface surface = lattice_surface({}, 4096);
     const voxelizer::GpuSurface uploaded = upload(surface);
     TriangleLists lists(shape, surface);
-    voxelizer::Voxelizer voxelizer;
+    voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle(shape, uploaded, voxelizer, lists);
     EXPECT_EQ(oracle.child_mask({}), glm::uvec2(0));
     EXPECT_EQ(oracle.child_mask({shape.max_level - 1, {3, 2, 1}}), glm::uvec2(0));

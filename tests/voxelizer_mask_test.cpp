@@ -4,8 +4,8 @@
 
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
+#include "voxelizer/conservative_voxelizer.h"
 #include "voxelizer/exact_mask.h"
-#include "voxelizer/voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -62,7 +62,7 @@ protected:
     }
 
 private:
-    std::optional<Voxelizer> voxelizer_;
+    std::optional<ConservativeVoxelizer> voxelizer_;
 };
 
 glm::vec3 random_corner(Random& random, bool on_planes) {

@@ -6,7 +6,7 @@
 #include "scenes/snapshot.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
-#include "voxelizer/voxelizer.h"
+#include "voxelizer/conservative_voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -27,7 +27,7 @@ class RealScene : public GlTest, public ::testing::WithParamInterface<SceneAt> {
 TEST_P(RealScene, HasTheBitsOfTheExactReference) {
     const scenes::Scene scene = scenes::load(GetParam().path);
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
-    Voxelizer voxelizer;
+    ConservativeVoxelizer voxelizer;
     for (const int resolution : GetParam().resolutions) {
         const Surface surface = build_surface(scene, snapshot, grid_around(snapshot.bounds, resolution));
         const Region region = whole(surface.grid);

@@ -1,7 +1,5 @@
 // The conservative method on hand-made triangles: against every voxel of a small region, one triangle at a
 // time.
-#include "voxelizer/voxelizer.h"
-
 #include <algorithm>
 #include <numeric>
 
@@ -11,6 +9,7 @@
 #include "gl/limits.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
+#include "voxelizer/conservative_voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -50,7 +49,7 @@ protected:
     }
 
 private:
-    std::optional<Voxelizer> voxelizer_;
+    std::optional<ConservativeVoxelizer> voxelizer_;
 };
 
 const Region sixteen{4, glm::ivec3(0), glm::ivec3(16)};
@@ -374,7 +373,7 @@ TEST_F(VoxelizerTest, RunsGiveTheSameBits) {
     const BitGrid first = voxelizer().voxelize(surface, region);
     for (int run = 0; run < 5; ++run)
         ASSERT_EQ(voxelizer().voxelize(surface, region), first) << "run " << run;
-    Voxelizer other;
+    ConservativeVoxelizer other;
     EXPECT_EQ(other.voxelize(surface, region), first);
 }
 

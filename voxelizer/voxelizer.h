@@ -1,25 +1,36 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "gl/buffer.h"
-#include "gl/program.h"
+#include "gl/shader_source.h"
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/grid.h"
-#include "voxelizer/masked_marker.h"
+#include "voxelizer/pyramid_builder.h"
 #include "voxelizer/surface.h"
 
 namespace cairn::voxelizer {
 
-/// Marks every voxel whose closed box meets a triangle of the surface: never one fewer, never one more, the
-/// same bits on every driver. Runs on the GPU; needs the current context of its construction.
-///
-/// Separating axes: Akenine-Möller 2001; row spans: Schwarz and Seidel 2010, section 3.
+/// How voxels are found. Only `conservative` is exact; the others are Forest et al.'s, to compare with.
+enum class Method : std::uint8_t {
+    conservative,  ///< every voxel whose closed box meets a triangle: conservative_voxelizer.h
+};
+
+/// @throws Error  Fault::usage: there is no such method; says which there are.
+[[nodiscard]] Method method_named(std::string_view name);
+[[nodiscard]] std::string_view name_of(Method method);
+
+/// Marks the voxels of a surface on the GPU, by one of the methods. Needs the current context of its
+/// construction.
 class Voxelizer {
 public:
-    explicit Voxelizer(const gl::ShaderSource& shaders = {});
+    virtual ~Voxelizer() = default;
+    Voxelizer(const Voxelizer&) = delete;
+    Voxelizer& operator=(const Voxelizer&) = delete;
 
     /// @param subset  global triangle numbers, or none for all. Must hold every triangle that meets the
     ///                region for the bits to be right; others cost time only. Far triangles are always
@@ -39,27 +50,31 @@ public:
     /// an idle driver by the wall clock: the timer queries of llvmpipe do not see compute work.
     [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
 
+protected:
+    explicit Voxelizer(const gl::ShaderSource& shaders);
+
+    /// What to mark of one chunk of the surface.
+    struct ChunkPart {
+        std::size_t count = 0;             ///< of triangles
+        std::optional<gl::Buffer> subset;  ///< their numbers in the chunk; none: all
+    };
+    /// @param parts  one a chunk
+    /// @param bits   BitGrid::words of the region; undefined before, all written after.
+    virtual void mark(const GpuSurface& surface, const Region& region, std::span<const ChunkPart> parts,
+                      gl::Buffer& bits) = 0;
+    [[nodiscard]] const gl::ShaderSource& shaders() const { return shaders_; }
+
 private:
-    /// Marks the region in `bits_`.
-    void mark(const GpuSurface& surface, const Region& region,
-              std::optional<std::span<const std::uint32_t>> subset);
-    /// Marks the bound chunk, or the bound subset of it; returns what the shaders left to the CPU.
-    std::vector<MaskCandidate> mark_chunk(const Region& region, std::size_t count, bool has_subset);
-    void mark_doubtful(const Region& region, unsigned count);
-    void mark_queued(const Region& region, unsigned queue, unsigned count);
-    /// Adds far triangles, and voxels that the CPU found.
-    void mark_on_cpu(const GpuSurface& surface, const Region& region, const std::vector<glm::ivec3>& voxels);
-    [[nodiscard]] static BitGrid read_bits(const gl::Buffer& bits, const glm::ivec3& size);
+    /// Marks the region in `bits_`, and takes the time.
+    void mark_timed(const GpuSurface& surface, const Region& region,
+                    std::optional<std::span<const std::uint32_t>> subset);
 
     gl::ShaderSource shaders_;
-    gl::Program mark_small_;
-    gl::Program mark_doubtful_;
-    gl::Program mark_large_;
-    gl::Program halve_;
-    std::optional<MaskedMarker> masked_;  ///< built when a surface first needs it
-    gl::Buffer queue_;
+    PyramidBuilder pyramid_;
     gl::Buffer bits_;
     double last_milliseconds_ = 0.0;
 };
+
+[[nodiscard]] std::unique_ptr<Voxelizer> make_voxelizer(Method method, const gl::ShaderSource& shaders = {});
 
 }  // namespace cairn::voxelizer

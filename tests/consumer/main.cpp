@@ -11,7 +11,7 @@
 #include "scenes/builtin.h"
 #include "scenes/snapshot.h"
 #include "voxelizer/surface.h"
-#include "voxelizer/voxelizer.h"
+#include "voxelizer/conservative_voxelizer.h"
 
 int main() {
     try {
@@ -22,7 +22,7 @@ int main() {
         const cairn::voxelizer::Grid grid = cairn::voxelizer::grid_around(snapshot.bounds, 32);
         const cairn::voxelizer::GpuSurface surface =
             cairn::voxelizer::upload(cairn::voxelizer::build_surface(scene, snapshot, grid));
-        cairn::voxelizer::Voxelizer voxelizer;
+        cairn::voxelizer::ConservativeVoxelizer voxelizer;
         const auto occupied = voxelizer.voxelize(surface, cairn::voxelizer::whole(grid)).count();
 
         cairn::renderer::View view;
