@@ -13,12 +13,13 @@ void mark_span(ivec2 row, ivec2 span) {
     if (first > last) return;
     const ivec2 place = row - region_origin.yz;
     const int row_word = (place.y * region_size.y + place.x) * ((region_size.x + 31) >> 5);
+    const int first_word = first >> 5;
     const int last_word = last >> 5;
-    uint bits = 0xFFFFFFFFu << uint(first & 31);
-    for (int word = first >> 5; word <= last_word; ++word) {
-        if (word == last_word) bits &= 0xFFFFFFFFu >> uint(31 - (last & 31));
-        atomicOr(voxel_bits[row_word + word], bits);
-        bits = 0xFFFFFFFFu;
+    const uint low_bits = 0xFFFFFFFFu << uint(first & 31);
+    const uint high_bits = 0xFFFFFFFFu >> uint(31 - (last & 31));
+    atomicOr(voxel_bits[row_word + first_word], first_word == last_word ? low_bits & high_bits : low_bits);
+    for (int word = first_word + 1; word <= last_word; ++word) {
+        atomicOr(voxel_bits[row_word + word], word == last_word ? high_bits : 0xFFFFFFFFu);
     }
 }
 

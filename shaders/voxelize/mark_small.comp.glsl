@@ -34,6 +34,12 @@ bool enqueue_if_not_small(ExactTriangle t, uint triangle, uint material, ivec3 s
     enqueue(rows_a_thread > float(thread_rows) ? VOXEL_QUEUE_HUGE : VOXEL_QUEUE_LARGE, triangle);
     return true;
 }
+
+// First and last y of a slice's rows.
+ivec2 rows_in_region(ExactTriangle t, RowSlice slice, ivec3 low, ivec3 high) {
+    const ivec2 rows = rows_of_slice(t, slice);
+    return ivec2(max(rows.x, low.y), min(rows.y, high.y));
+}
 #endif
 
 void main() {
@@ -58,16 +64,23 @@ void main() {
         for (int y = low.y; y <= high.y; ++y) mark_span(ivec2(y, z), exact_row_span(t, ivec2(y, z)));
     }
 #else
+    // One loop over all rows, not one a slice: lanes run in lockstep, and a slice's longest row count would be everyone's.
     bool any_doubt = false;
-    for (int z = low.z; z <= high.z; ++z) {
-        const RowSlice slice = row_slice(t, z);
-        const ivec2 rows = rows_of_slice(t, slice);
-        const int last = min(rows.y, high.y);
-        for (int y = max(rows.x, low.y); y <= last; ++y) {
+    int z = low.z;
+    RowSlice slice = row_slice(t, z);
+    ivec2 rows = rows_in_region(t, slice, low, high);
+    while (z <= high.z) {
+        if (rows.x <= rows.y) {
             bool in_doubt;
-            const ivec2 span = filtered_row_span(t, slice, y, in_doubt);
-            if (!in_doubt) mark_span(ivec2(y, z), span);
+            const ivec2 span = filtered_row_span(t, slice, rows.x, in_doubt);
+            if (!in_doubt) mark_span(ivec2(rows.x, z), span);
             any_doubt = any_doubt || in_doubt;
+            ++rows.x;
+        }
+        if (rows.x > rows.y) {
+            ++z;
+            slice = row_slice(t, z);
+            rows = rows_in_region(t, slice, low, high);
         }
     }
     if (any_doubt) enqueue(VOXEL_QUEUE_DOUBT, triangle);
