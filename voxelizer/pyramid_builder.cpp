@@ -1,11 +1,28 @@
 #include "voxelizer/pyramid_builder.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
 
 namespace cairn::voxelizer {
+namespace {
+
+/// Rows of so many words are read four words at a time.
+bool is_wide(const glm::ivec3& size) {
+    return (size.x + 31) / 32 % 4 == 0;
+}
+
+gl::TextureHandle view(const gl::Buffer& bits, const glm::ivec3& size) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    gl::TextureHandle texture(id);
+    glTextureBuffer(id, is_wide(size) ? GL_RGBA32UI : GL_R32UI, bits.id());
+    return texture;
+}
+
+}  // namespace
 
 std::size_t bit_bytes(const glm::ivec3& size) {
     return std::size_t((size.x + 31) / 32) * std::size_t(size.y) * std::size_t(size.z) *
@@ -19,27 +36,57 @@ BitGrid read_bits(const gl::Buffer& bits, const glm::ivec3& size) {
 }
 
 PyramidBuilder::PyramidBuilder(const gl::ShaderSource& shaders)
-    : halve_(gl::build_compute(shaders, "voxelize/halve.comp.glsl")) {}
+    : halve_wide_(gl::build_compute(shaders, "voxelize/halve.comp.glsl", {{"WIDE", "1"}})),
+      halve_(gl::build_compute(shaders, "voxelize/halve.comp.glsl", {{"WIDE", "0"}})) {}
+
+void PyramidBuilder::prepare(const glm::ivec3& size) {
+    const glm::ivec3 first = (size + 1) / 2;
+    if (!levels_.empty() && levels_.front().size == first) return;
+    levels_.clear();
+    for (glm::ivec3 fine = size; fine != glm::ivec3(1);) {
+        Level level;
+        level.size = (fine + 1) / 2;
+        level.bits = gl::Buffer(std::max<std::size_t>(bit_bytes(level.size), 16), "voxel pyramid");
+        level.texture = view(level.bits, level.size);
+        fine = level.size;
+        levels_.push_back(std::move(level));
+    }
+}
+
+void PyramidBuilder::halve(const gl::TextureHandle& fine, const glm::ivec3& fine_size, const Level& coarse) {
+    const gl::Program& program = is_wide(fine_size) ? halve_wide_ : halve_;
+    glBindTextureUnit(TEXTURE_HALVE_FINE, fine.id());
+    coarse.bits.bind_storage(SSBO_HALVE_COARSE);
+    program.set("fine_size", fine_size);
+    program.use();
+    const int coarse_words = (coarse.size.x + 31) / 32;
+    gl::dispatch_threads(
+        std::size_t((coarse_words + 1) / 2) * std::size_t(coarse.size.y) * std::size_t(coarse.size.z),
+        VOXEL_GROUP);
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
 
 BitmaskPyramid PyramidBuilder::build(const gl::Buffer& bits, const glm::ivec3& size) {
+    prepare(size);
+    finest_ = view(bits, size);
+    glFinish();
+    const auto start = std::chrono::steady_clock::now();
+    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    const gl::TextureHandle* fine = &finest_;
+    glm::ivec3 fine_size = size;
+    for (const Level& level : levels_) {
+        halve(*fine, fine_size, level);
+        fine = &level.texture;
+        fine_size = level.size;
+    }
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glFinish();
+    last_milliseconds_ =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     std::vector<BitGrid> levels;
     levels.push_back(read_bits(bits, size));
-    const gl::Buffer* fine = &bits;
-    std::array<gl::Buffer, 2> coarse;
-    for (glm::ivec3 fine_size = size; fine_size != glm::ivec3(1);) {
-        const glm::ivec3 half = (fine_size + 1) / 2;
-        gl::Buffer& out = coarse[levels.size() % 2];
-        out = gl::Buffer(std::max<std::size_t>(bit_bytes(half), 16), "voxel pyramid");
-        fine->bind_storage(SSBO_HALVE_FINE);
-        out.bind_storage(SSBO_HALVE_COARSE);
-        halve_.set("fine_size", fine_size);
-        halve_.use();
-        gl::dispatch_threads(bit_bytes(half) / sizeof(std::uint32_t), VOXEL_GROUP);
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-        levels.push_back(read_bits(out, half));
-        fine = &out;
-        fine_size = half;
-    }
+    for (const Level& level : levels_)
+        levels.push_back(read_bits(level.bits, level.size));
     return BitmaskPyramid(std::move(levels));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "gl/buffer.h"
 #include "gl/program.h"
@@ -18,8 +18,24 @@ public:
     /// @param bits  BitGrid::words of the finest level, `size` voxels
     [[nodiscard]] BitmaskPyramid build(const gl::Buffer& bits, const glm::ivec3& size);
 
+    /// All coarser levels of the last call, without their read-back, by the wall clock.
+    [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
+
 private:
+    /// A level on the GPU, and the buffer texture through which the next one is computed from it.
+    struct Level {
+        glm::ivec3 size{0};
+        gl::Buffer bits;
+        gl::TextureHandle texture;
+    };
+    void prepare(const glm::ivec3& size);
+    void halve(const gl::TextureHandle& fine, const glm::ivec3& fine_size, const Level& coarse);
+
+    gl::Program halve_wide_;
     gl::Program halve_;
+    gl::TextureHandle finest_;   ///< of the buffer that the last call was given
+    std::vector<Level> levels_;  ///< kept for the next pyramid of the same size
+    double last_milliseconds_ = 0.0;
 };
 
 /// Bytes of BitGrid::words.

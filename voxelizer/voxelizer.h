@@ -49,6 +49,8 @@ public:
     /// The voxelization alone of the last call (no upload, no read-back, no pyramid), from an idle driver to
     /// an idle driver by the wall clock: the timer queries of llvmpipe do not see compute work.
     [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
+    /// What the coarser levels of the last pyramid took on top.
+    [[nodiscard]] double last_pyramid_milliseconds() const { return pyramid_.last_milliseconds(); }
 
 protected:
     explicit Voxelizer(const gl::ShaderSource& shaders);

@@ -14,8 +14,8 @@
 #define SSBO_VOXEL_QUEUE 6   // VOXEL_QUEUE_* counters, then the queues
 #define SSBO_VOXEL_SUBSET 7  // triangles to mark, when not all
 #define SSBO_VOXEL_CANDIDATES 7  // voxels that a mask may cut away (shaders/voxelize/candidates.glsl)
-#define SSBO_HALVE_FINE 0    // BitGrid::words of a level, and of the next coarser one (pass that reads no surface)
-#define SSBO_HALVE_COARSE 1
+#define TEXTURE_HALVE_FINE 0  // BitGrid::words of a level; those of the next coarser one (passes that read no surface)
+#define SSBO_HALVE_COARSE 0
 
 // The producer's own (beside the surface's 0 to 4).
 #define SSBO_BRICK_PAIRS 5    // BrickPair: which triangle touches which tile of the batch

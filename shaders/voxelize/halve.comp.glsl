@@ -1,21 +1,34 @@
-// One thread is one word of the coarser level: the OR of 2 x 2 x 2 voxels of the finer one (Forest et al. 2009, 2.3).
+// One thread is two words of the coarser level, side by side: each voxel the OR of 2 x 2 x 2 of the finer one (Forest et
+// al. 2009, 2.3). It reads through a buffer texture, four words at a time where rows allow it: software drivers load from
+// storage buffers lane by lane.
+// defines: WIDE=1
+// defines: WIDE=0
 #include "interop/bindings.h"
 #include "interop/config.h"
 
 layout(local_size_x = VOXEL_GROUP) in;
 
-layout(std430, binding = SSBO_HALVE_FINE) restrict readonly buffer FineBits { uint fine_bits[]; };
+layout(binding = TEXTURE_HALVE_FINE) uniform usamplerBuffer fine_bits;  // WIDE: four words a texel, or one
 layout(std430, binding = SSBO_HALVE_COARSE) restrict writeonly buffer CoarseBits { uint coarse_bits[]; };
 
 uniform ivec3 fine_size;
 
-uint fine_word(ivec3 place, int words_per_row) {
-    if (place.x >= words_per_row || place.y >= fine_size.y || place.z >= fine_size.z) return 0u;
-    return fine_bits[(place.z * fine_size.y + place.y) * words_per_row + place.x];
+// Four words of a row of the finer level.
+uvec4 fine_words(int row, int first) {
+    const int words = (fine_size.x + 31) >> 5;
+#if WIDE
+    return texelFetch(fine_bits, (row * words + first) >> 2);
+#else
+    uvec4 four = uvec4(0u);
+    for (int i = 0; i < 4; ++i) {
+        if (first + i < words) four[i] = texelFetch(fine_bits, row * words + first + i).x;
+    }
+    return four;
+#endif
 }
 
 // Bit i of the result is the OR of bits 2i and 2i + 1.
-uint or_of_pairs(uint word) {
+uvec4 or_of_pairs(uvec4 word) {
     word = (word | word >> 1) & 0x55555555u;
     word = (word | word >> 1) & 0x33333333u;
     word = (word | word >> 2) & 0x0F0F0F0Fu;
@@ -25,17 +38,18 @@ uint or_of_pairs(uint word) {
 
 void main() {
     const ivec3 coarse_size = (fine_size + 1) >> 1;
-    const int fine_words = (fine_size.x + 31) >> 5;
     const int coarse_words = (coarse_size.x + 31) >> 5;
+    const int pairs = (coarse_words + 1) >> 1;
     const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
-    if (thread >= uint(coarse_words * coarse_size.y * coarse_size.z)) return;
-    const int word = int(thread);
-    const ivec3 place = ivec3(word % coarse_words, word / coarse_words % coarse_size.y,
-                              word / coarse_words / coarse_size.y);
-    uint halves[2] = uint[2](0u, 0u);
-    for (int corner = 0; corner < 8; ++corner) {
-        const ivec3 offset = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        halves[offset.x] |= fine_word(2 * place + offset, fine_words);
-    }
-    coarse_bits[word] = or_of_pairs(halves[0]) | or_of_pairs(halves[1]) << 16;
+    if (thread >= uint(pairs * coarse_size.y * coarse_size.z)) return;
+    const int coarse_row = int(thread) / pairs;
+    const int pair = int(thread) % pairs;
+    const ivec2 low = 2 * ivec2(coarse_row % coarse_size.y, coarse_row / coarse_size.y);
+    const ivec2 high = min(low + 1, fine_size.yz - 1);
+    const uvec4 words = fine_words(low.y * fine_size.y + low.x, 4 * pair) | fine_words(low.y * fine_size.y + high.x, 4 * pair) |
+                        fine_words(high.y * fine_size.y + low.x, 4 * pair) | fine_words(high.y * fine_size.y + high.x, 4 * pair);
+    const uvec4 halves = or_of_pairs(words);
+    const int place = coarse_row * coarse_words + 2 * pair;
+    coarse_bits[place] = halves.x | halves.y << 16;
+    if (2 * pair + 1 < coarse_words) coarse_bits[place + 1] = halves.z | halves.w << 16;
 }
