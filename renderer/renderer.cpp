@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -119,6 +120,9 @@ struct Renderer::Parts {
 
     void converge(const std::function<void(double)>& progress, double pixels, double pixels_before);
     void serve(std::vector<std::uint32_t> queries);
+    void refine(Clock::time_point deadline);
+    [[nodiscard]] PassResult march(PassKind kind);
+    [[nodiscard]] bool serve_until(Clock::time_point deadline, const PassResult& pass);
     void subdivide(std::uint32_t entry);
 
     TreeShape shape;
@@ -186,27 +190,95 @@ void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
     tree.upload();
 }
 
+PassResult Renderer::Parts::march(PassKind kind) {
+    const auto start = Clock::now();
+    PassResult pass = marcher.run_pass(round, tree, pool, kind);
+    statistics.march_ms += milliseconds_since(start);
+    ++statistics.passes;
+    ++round;
+    tree.begin_round(round, pass.brick_stamps);
+    return pass;
+}
+
+/// Answers tile queries in the order of how many rays ask, the coarsest first among equals, until time is up;
+/// one batch of them in any case. @return whether any was answered.
+bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& pass) {
+    /// Answered at once: the deadline is looked at between batches.
+    constexpr std::size_t batch = 16;
+    struct Question {
+        std::uint32_t entry, rays;
+        int level;
+        bool for_children, to_stand_in;
+    };
+    std::vector<Question> questions;
+    for (const std::uint32_t query : pass.queries) {
+        const bool to_stand_in = query >= 2 * tree.entry_count();
+        const std::uint32_t entry = to_stand_in ? query - 2 * tree.entry_count() : query / 2;
+        questions.push_back({entry, pass.query_counts[query % QUERY_COUNTS], tree.tile(entry).level,
+                             !to_stand_in && query % 2 == QUERY_CHILDREN, to_stand_in});
+    }
+    std::sort(questions.begin(), questions.end(), [](const Question& a, const Question& b) {
+        return std::tuple(b.rays, a.level, a.entry) < std::tuple(a.rays, b.level, b.entry);
+    });
+    const std::uint64_t before = statistics.nodes_subdivided + statistics.bricks_produced;
+    std::vector<BrickRequest> requests;
+    for (std::size_t first = 0; first < questions.size(); first += batch) {
+        for (std::size_t i = first; i < std::min(first + batch, questions.size()); ++i) {
+            const Question& question = questions[i];
+            if (question.for_children) {
+                subdivide(question.entry);
+            } else if (tree.wants_brick(question.entry)) {
+                if (const std::optional<int> slot = tree.add_brick(question.entry, !question.to_stand_in))
+                    requests.push_back({tree.tile(question.entry), *slot});
+            }
+        }
+        producer.produce(requests, pool);
+        glFinish();
+        statistics.bricks_produced += requests.size();
+        requests.clear();
+        if (Clock::now() > deadline) break;
+    }
+    statistics.tile_queries += questions.size();
+    tree.upload();
+    return statistics.nodes_subdivided + statistics.bricks_produced > before;
+}
+
+/// Passes and production in turn until nothing is missing or time is up; then what is missing is stood in
+/// for.
+void Renderer::Parts::refine(Clock::time_point deadline) {
+    for (;;) {
+        const PassResult pass = march(PassKind::progressive);
+        const auto start = Clock::now();
+        const bool answered = serve_until(deadline, pass);
+        statistics.produce_ms += milliseconds_since(start);
+        if (pass.done()) return;
+        if (Clock::now() > deadline || (!answered && !pass.queries.empty())) break;
+    }
+    for (bool done = false; !done;) {
+        const PassResult pass = march(PassKind::stand_in);
+        statistics.converged = statistics.converged && pass.stood_in == 0;
+        // What only these rays have asked for, as shadow rays may, brings the next frame forward.
+        (void)serve_until(deadline, pass);
+        done = pass.done();
+    }
+}
+
 /// Passes of rays and what they ask for, in turn, until nothing is missing.
 void Renderer::Parts::converge(const std::function<void(double)>& progress, double pixels,
                                double pixels_before) {
     for (;;) {
-        const auto pass_start = Clock::now();
-        const PassResult pass = marcher.run_pass(round, tree, pool);
-        const auto pass_end = Clock::now();
-        statistics.march_ms += std::chrono::duration<double, std::milli>(pass_end - pass_start).count();
-        ++statistics.passes;
-        ++round;
-        tree.begin_round(round, pass.brick_stamps);
+        const PassResult pass = march(PassKind::patient);
         if (pass.done()) return;
+        const auto start = Clock::now();
         serve(pass.queries);
-        statistics.produce_ms += milliseconds_since(pass_end);
+        statistics.produce_ms += milliseconds_since(start);
         const double waiting = pass.waiting_primary + 0.5 * pass.waiting_shadow;
         const double band = double(marcher.band_pixels());
         if (progress) progress((pixels_before + band - waiting) / pixels);
     }
 }
 
-Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
+Image Renderer::march(const View& view, const std::function<void(int)>& march_band) {
     check(view);
     Parts& parts = *parts_;
     const auto start = Clock::now();
@@ -216,13 +288,12 @@ Image Renderer::render(const View& view, const std::function<void(double)>& prog
 
     interop::MarchView marched = march_view(view, parts.grid, parts.shape.n);
     marched.surface_color = glm::vec4(parts.uniform_color, 1.0F);
-    const double pixels = double(view.width) * view.height;
     const int band_rows = Marcher::band_rows(view.width, view.height);
     Image image{view.width, view.height, {}};
     for (int row = 0; row < view.height; row += band_rows) {
         marched.band = glm::ivec4(row, std::min(band_rows, view.height - row), 0, 0);
         parts.marcher.begin_frame(marched, parts.tree, parts.pool);
-        parts.converge(progress, pixels, double(view.width) * row);
+        march_band(row);
         std::vector<std::uint8_t> band = parts.marcher.read_image();
         if (image.rgba.empty()) {
             image.rgba = std::move(band);
@@ -238,6 +309,24 @@ Image Renderer::render(const View& view, const std::function<void(double)>& prog
     statistics.node_pool_bytes = parts.tree.size_bytes();
     statistics.brick_pool_bytes = parts.pool.size_bytes();
     return image;
+}
+
+Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
+    parts_->tree.keep_since(0);
+    return march(view, [&](int row) {
+        parts_->converge(progress, double(view.width) * view.height, double(view.width) * row);
+    });
+}
+
+Image Renderer::render_within(const View& view, double budget_ms) {
+    constexpr double a_day = 86.4e6;
+    if (!(budget_ms >= 0.0))
+        throw Error(Fault::usage, "frame budget", "it is negative or not a number", "give it milliseconds");
+    const auto deadline =
+        Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                           std::chrono::duration<double, std::milli>(std::min(budget_ms, a_day)));
+    parts_->tree.keep_since(parts_->round);
+    return march(view, [&](int) { parts_->refine(deadline); });
 }
 
 const FrameStatistics& Renderer::statistics() const {

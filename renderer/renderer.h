@@ -77,6 +77,7 @@ struct FrameStatistics {
     std::uint64_t nodes_evicted = 0;
     double march_ms = 0.0;              ///< of `milliseconds`: rays
     double produce_ms = 0.0;            ///< of `milliseconds`: subdividing, producing, uploading
+    bool converged = true;              ///< nothing was missing: the picture is that of render()
     std::uint64_t bricks_resident = 0;  ///< after the frame
     std::size_t node_pool_bytes = 0;    ///< what the two stores take, all of it, used or not
     std::size_t brick_pool_bytes = 0;
@@ -103,11 +104,21 @@ public:
     /// @param progress  called after each pass with the share of pixels that are done, in [0, 1].
     [[nodiscard]] Image render(const View& view, const std::function<void(double)>& progress = {});
 
-    /// Of the last `render()`.
+    /// Renders what is there, and produces no longer than until `budget_ms` have passed since the call: first
+    /// what most rays ask for. What is missing then is shown by the nearest ancestor that has a brick, or not
+    /// at all. Rays are never cut short: a frame takes at least as long as marching it once.
+    ///
+    /// Called again for the same view, it goes on where it stopped, until the picture is that of render():
+    /// statistics().converged. Pools too small for the view leave some of it at a lower level of detail.
+    [[nodiscard]] Image render_within(const View& view, double budget_ms);
+
+    /// Of the last `render()` or `render_within()`.
     [[nodiscard]] const FrameStatistics& statistics() const;
 
 private:
     struct Parts;
+    /// Marches a picture band by band; `march_band(row)` brings one to its end.
+    Image march(const View& view, const std::function<void(int)>& march_band);
     std::unique_ptr<Parts> parts_;
 };
 

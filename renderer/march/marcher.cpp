@@ -15,14 +15,29 @@ constexpr unsigned group_size = 64;
 /// cube.
 constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
 constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
+constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t);
 
 }  // namespace
 
 Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders)
-    : primary_(gl::build_compute(shaders, "march/primary.comp.glsl", shape.defines(has_color))),
-      shadow_(gl::build_compute(shaders, "march/shadow.comp.glsl", shape.defines(has_color))),
+    : shaders_(shaders),
+      defines_(shape.defines(has_color)),
+      patient_(build_programs(shaders, defines_, "0")),
       view_(sizeof(interop::MarchView), "view"),
-      queries_(query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t), "tile query buffer") {}
+      queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {}
+
+Marcher::Programs Marcher::build_programs(const gl::ShaderSource& shaders, gl::Defines defines,
+                                          const char* progressive) {
+    defines.emplace_back("PROGRESSIVE", progressive);
+    return {gl::build_compute(shaders, "march/primary.comp.glsl", defines),
+            gl::build_compute(shaders, "march/shadow.comp.glsl", defines)};
+}
+
+const Marcher::Programs& Marcher::programs(PassKind kind) {
+    if (kind == PassKind::patient) return patient_;
+    if (!progressive_) progressive_ = build_programs(shaders_, defines_, "1");
+    return *progressive_;
+}
 
 int Marcher::band_rows(int width, int height) {
     const std::size_t row_bytes = std::size_t(width) * sizeof(interop::RayState);
@@ -41,7 +56,8 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         capacity_ = pixels;
     }
     query_bits_offset_ = std::uint32_t(pool.slot_count());
-    const std::size_t usage_words = query_bits_offset_ + (2 * std::size_t(tree.entry_count()) + 31) / 32;
+    entry_count_ = tree.entry_count();
+    const std::size_t usage_words = query_bits_offset_ + (3 * std::size_t(tree.entry_count()) + 31) / 32;
     if (usage_.size_bytes() != usage_words * sizeof(std::uint32_t)) {
         usage_ = gl::Buffer(usage_words * sizeof(std::uint32_t), "brick usage");
         usage_.fill(0);
@@ -53,10 +69,14 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     waiting_shadow_ = 0;
 }
 
-PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool) {
-    usage_.fill(query_bits_offset_ * sizeof(std::uint32_t),
-                usage_.size_bytes() - query_bits_offset_ * sizeof(std::uint32_t), 0);
+PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool, PassKind kind) {
+    // Stand-ins are asked for by progressive passes alone.
+    const std::size_t query_words =
+        ((kind == PassKind::patient ? 2 : 3) * std::size_t(tree.entry_count()) + 31) / 32;
+    usage_.fill(query_bits_offset_ * sizeof(std::uint32_t), query_words * sizeof(std::uint32_t), 0);
     queries_.fill(0, query_header_bytes, 0);
+    if (kind != PassKind::patient)
+        queries_.fill(query_counts_offset, QUERY_COUNTS * sizeof(std::uint32_t), 0);
     view_.bind_uniform(UBO_VIEW);
     rays_.bind_storage(SSBO_RAYS);
     lists_.bind_storage(SSBO_LISTS);
@@ -69,9 +89,10 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     const std::uint32_t old_shadow = waiting_shadow_;
     const glm::ivec2 blocks = (size_ + 7) / 8;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
-    if (old_shadow != 0) run(shadow_, old_shadow, false, round, pool);
+    const Programs& program = programs(kind);
+    if (old_shadow != 0) run({program.shadow, true, old_shadow}, round, pool, kind);
     const std::uint32_t primary = first_pass_ ? std::uint32_t(blocks.x * blocks.y) * 64U : waiting_primary_;
-    if (primary != 0) run(primary_, primary, first_pass_, round, pool);
+    if (primary != 0) run({program.primary, false, primary}, round, pool, kind);
     first_pass_ = false;
     list_side_ ^= 1;
 
@@ -84,29 +105,36 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
                     "this is a fault of Cairn: please report the scene and the view");
     }
     PassResult result;
+    result.stood_in = counters.stood_in;
     result.waiting_primary = waiting_primary_ = counters.waiting_primary;
     result.waiting_shadow = waiting_shadow_ = counters.waiting_shadow;
     result.queries = queries_.read_all<std::uint32_t>(std::min<std::size_t>(counters.queries, QUERY_CAPACITY),
                                                       query_header_bytes);
+    if (kind != PassKind::patient)
+        result.query_counts = queries_.read_all<std::uint32_t>(QUERY_COUNTS, query_counts_offset);
     result.brick_stamps = usage_.read_all<std::uint32_t>(std::size_t(pool.slot_count()));
     return result;
 }
 
-void Marcher::run(const gl::Program& program, std::uint32_t rays, bool first_pass, std::uint32_t round,
-                  const BrickPool& pool) {
+void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool& pool, PassKind kind) const {
     // Four lists of `capacity_` pixels: primary in and out, shadow in and out, changing sides each pass.
-    auto list = [&](int kind, int side) { return unsigned(std::size_t(2 * kind + side) * capacity_); };
-    const int kind = &program == &shadow_ ? 1 : 0;
-    program.set("ray_count", rays);
-    program.set("first_pass", int(first_pass));
-    program.set("list_in", list(kind, list_side_));
-    program.set("list_out", list(kind, list_side_ ^ 1));
+    auto list = [&](int rays, int side) { return unsigned(std::size_t(2 * rays + side) * capacity_); };
+    const int of_kind = dispatch.is_shadow ? 1 : 0;
+    const gl::Program& program = dispatch.program;
+    program.set("ray_count", dispatch.rays);
+    program.set("first_pass", int(first_pass_));
+    program.set("list_in", list(of_kind, list_side_));
+    program.set("list_out", list(of_kind, list_side_ ^ 1));
+    if (kind != PassKind::patient) {
+        program.set("stand_in", int(kind == PassKind::stand_in));
+        program.set("entry_count", entry_count_);
+    }
     program.set("shadow_list", list(1, list_side_ ^ 1));
     program.set("pass_number", round);
     program.set("usage_query_offset", query_bits_offset_);
     program.set("pool_slots", pool.slots());
     program.use();
-    gl::dispatch_threads(rays, group_size);
+    gl::dispatch_threads(dispatch.rays, group_size);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

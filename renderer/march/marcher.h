@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -14,11 +15,23 @@
 
 namespace cairn::renderer {
 
+/// How rays take what is missing.
+enum class PassKind : std::uint8_t {
+    patient,      ///< a ray waits for the tile that it asks for
+    progressive,  ///< the same; rays also ask for the bricks of the nodes that they pass
+    stand_in,     ///< no ray waits: the nearest ancestor's brick is shown
+};
+
 /// What one pass of rays came back with.
 struct PassResult {
-    std::uint32_t waiting_primary = 0;        ///< rays that missed a tile or paused
-    std::uint32_t waiting_shadow = 0;         ///< the same, and shadow rays not yet started
-    std::vector<std::uint32_t> queries;       ///< 2 * node entry + QUERY_*; each once
+    std::uint32_t waiting_primary = 0;  ///< rays that missed a tile or paused
+    std::uint32_t waiting_shadow = 0;   ///< the same, and shadow rays not yet started
+    std::uint32_t stood_in = 0;         ///< missing tiles that rays did not wait for
+    /// 2 * node entry + QUERY_*, or 2 * Tree::entry_count() + entry for a brick that could stand in; each
+    /// once.
+    std::vector<std::uint32_t> queries;
+    std::vector<std::uint32_t>
+        query_counts;  ///< rays that ask, by query % QUERY_COUNTS; not of patient passes
     std::vector<std::uint32_t> brick_stamps;  ///< one a slot: the last round whose rays used it
     [[nodiscard]] bool done() const { return waiting_primary == 0 && waiting_shadow == 0; }
 };
@@ -40,7 +53,8 @@ public:
     /// `round` is a number that grows with each pass.
     /// @throws Error (Fault::internal) when rays wait though nothing is missing and none has paused, or pause
     /// without end.
-    [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool);
+    [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool,
+                                      PassKind kind = PassKind::patient);
 
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
 
@@ -48,12 +62,26 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> read_image() const;
 
 private:
-    void run(const gl::Program& program, std::uint32_t rays, bool first_pass, std::uint32_t round,
-             const BrickPool& pool);
+    /// The two kinds of ray.
+    struct Programs {
+        gl::Program primary;
+        gl::Program shadow;
+    };
+    [[nodiscard]] static Programs build_programs(const gl::ShaderSource& shaders, gl::Defines defines,
+                                                 const char* progressive);
+    [[nodiscard]] const Programs& programs(PassKind kind);
+    struct Dispatch {
+        const gl::Program& program;
+        bool is_shadow = false;
+        std::uint32_t rays = 0;
+    };
+    void run(const Dispatch& dispatch, std::uint32_t round, const BrickPool& pool, PassKind kind) const;
     [[nodiscard]] interop::MarchCounters read_counters() const;
 
-    gl::Program primary_;
-    gl::Program shadow_;
+    gl::ShaderSource shaders_;
+    gl::Defines defines_;
+    Programs patient_;
+    std::optional<Programs> progressive_;  ///< built when a frame first asks for them
     gl::Buffer view_;
     gl::Buffer rays_;
     gl::Buffer lists_;
@@ -63,6 +91,7 @@ private:
     glm::ivec2 size_{0};
     std::size_t capacity_ = 0;  // pixels that the buffers hold
     std::uint32_t query_bits_offset_ = 0;
+    std::uint32_t entry_count_ = 0;
     std::uint32_t waiting_primary_ = 0;
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;

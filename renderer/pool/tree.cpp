@@ -104,11 +104,11 @@ void Tree::set_child_mask(std::uint32_t entry, glm::uvec2 mask) {
     mark_dirty(entry);
 }
 
-std::optional<int> Tree::add_brick(std::uint32_t entry) {
+std::optional<int> Tree::add_brick(std::uint32_t entry, bool may_stay) {
     pin_path(entry);
     const int slot = take_slot();
     if (slot < 0) return std::nullopt;
-    bricks_.touch(slot, round_);
+    bricks_.touch(slot, may_stay ? round_ : 0);
     slot_owner_[std::size_t(slot)] = entry;
     entries_[entry].brick = std::uint32_t(slot) + 1;
     mark_dirty(entry);
@@ -120,7 +120,7 @@ int Tree::take_slot() {
     if (!slots_sorted_) {
         old_slots_.clear();
         for (int slot = 0; slot < bricks_.count(); ++slot) {
-            if (bricks_.stamp(slot) < round_) old_slots_.push_back(slot);
+            if (is_old(bricks_.stamp(slot))) old_slots_.push_back(slot);
         }
         std::sort(old_slots_.begin(), old_slots_.end(),
                   [&](int a, int b) { return bricks_.stamp(a) > bricks_.stamp(b); });
@@ -129,7 +129,7 @@ int Tree::take_slot() {
     while (!old_slots_.empty()) {
         const int slot = old_slots_.back();
         old_slots_.pop_back();
-        if (slot_owner_[std::size_t(slot)] == none || bricks_.stamp(slot) >= round_) continue;
+        if (slot_owner_[std::size_t(slot)] == none || !is_old(bricks_.stamp(slot))) continue;
         evict_brick(slot);
         return bricks_.take_free();
     }
@@ -147,7 +147,7 @@ void Tree::evict_brick(int slot) {
 
 bool Tree::can_evict_block(int block) const {
     return block != 0 && block_parent_[std::size_t(block)] != none &&
-           block_child_blocks_[std::size_t(block)] == 0 && blocks_.stamp(block) < round_;
+           block_child_blocks_[std::size_t(block)] == 0 && is_old(blocks_.stamp(block));
 }
 
 void Tree::gather_old_block(int block) {

@@ -39,6 +39,10 @@ public:
     /// @param brick_stamps  one a slot: the last round whose rays used it.
     void begin_round(std::uint32_t round, const std::vector<std::uint32_t>& brick_stamps);
 
+    /// What rays used in that round or later is not evicted until this is called again; 0: whatever this
+    /// round did not use may go.
+    void keep_since(std::uint32_t round) { keep_since_ = round; }
+
     /// Still a question? An earlier answer of the round, or an eviction, may have settled it.
     [[nodiscard]] bool wants_children(std::uint32_t entry) const;
     [[nodiscard]] bool wants_brick(std::uint32_t entry) const;
@@ -51,7 +55,8 @@ public:
     void set_child_mask(std::uint32_t entry, glm::uvec2 mask);
 
     /// Gives the tile a slot for its brick, or none when all slots were given out in this round.
-    [[nodiscard]] std::optional<int> add_brick(std::uint32_t entry);
+    /// @param may_stay  counts as used in this round; else it is the first to be evicted.
+    [[nodiscard]] std::optional<int> add_brick(std::uint32_t entry, bool may_stay = true);
 
     /// Sends what changed to the GPU.
     void upload();
@@ -77,6 +82,10 @@ private:
     [[nodiscard]] std::uint32_t parent_entry(std::uint32_t entry) const {
         return block_parent_[block_of(entry)];
     }
+    /// May what was last used then be evicted?
+    [[nodiscard]] bool is_old(std::uint32_t stamp) const {
+        return stamp < round_ && (keep_since_ == 0 || stamp < keep_since_);
+    }
     [[nodiscard]] int take_slot();
     [[nodiscard]] int take_block();
     [[nodiscard]] bool can_evict_block(int block) const;
@@ -90,6 +99,7 @@ private:
     Lru blocks_;
     Lru bricks_;
     std::uint32_t round_ = 0;
+    std::uint32_t keep_since_ = 0;
     std::vector<interop::NodeEntry> entries_;
     std::vector<Tile> tiles_;                  // of each entry
     std::vector<std::uint32_t> block_parent_;  // entry whose children the block holds

@@ -46,6 +46,7 @@
 
 // The tile queries of one pass; what finds no room is asked for again by the next pass.
 #define QUERY_CAPACITY 65536
+#define QUERY_COUNTS 65536  // counts of the rays that ask, behind the queries; a query's is number query % QUERY_COUNTS
 #define QUERY_CHILDREN 0  // the node must be subdivided
 #define QUERY_BRICK 1     // the node's brick must be produced
 

@@ -84,6 +84,7 @@ struct MarchCounters {
     uint waiting_shadow;
     uint queries;
     uint paused;           // rays that used up the pass's turns and go on in the next
+    uint stood_in;         // tiles that were missing and that no ray waited for
 };
 
 #ifdef __cplusplus
@@ -92,7 +93,7 @@ static_assert(sizeof(BrickTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(BrickPair) == 12, "GLSL sees another layout");
 static_assert(sizeof(MarchView) == 160, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
-static_assert(sizeof(MarchCounters) == 16, "GLSL sees another layout");
+static_assert(sizeof(MarchCounters) == 20, "GLSL sees another layout");
 static_assert(sizeof(SurfaceTriangle) == 16, "GLSL sees another layout");
 static_assert(sizeof(SurfaceAttributes) == 16, "GLSL sees another layout");
 static_assert(sizeof(SurfaceMaterial) == 48, "GLSL sees another layout");

@@ -4,7 +4,10 @@
 // its cone asks for, marches its brick, and starts again behind it. Progress is by integer neighbour steps: every step
 // moves one coordinate of `voxel` by at least one in the ray's direction, so no epsilon is needed and no ray can stall.
 //
-// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth) and HAS_COLOR.
+// With PROGRESSIVE, for frames that must not take long, rays also ask for the bricks of the nodes that they pass, without
+// waiting for them; and when time is up (stand_in), what is missing is shown by the nearest ancestor that has a brick.
+//
+// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth), HAS_COLOR and PROGRESSIVE.
 #include "interop/config.h"
 #include "interop/bindings.h"
 #include "interop/types.h"
@@ -48,6 +51,10 @@ layout(binding = TEXTURE_BRICK_NORMAL) uniform sampler3D brick_normal;
 uniform uint pass_number;
 uniform uint usage_query_offset;  // word in usage[] where the query bits start
 uniform ivec3 pool_slots;         // slots along each axis of the pool's textures
+#if PROGRESSIVE
+uniform bool stand_in;            // the last pass of a frame: no ray may wait
+uniform uint entry_count;         // of the node pool
+#endif
 
 struct Ray {
     vec3 origin;
@@ -69,6 +76,7 @@ struct Sample {
     vec3 middle;          // middle of the chord, brick voxels, [0, BRICK_M]
     vec3 centre;          // of the voxel, from the root cube's low corner
     float t;              // distance of the chord's middle
+    float side;           // of the voxel
 };
 
 // Takes one occupied voxel; false stops the ray.
@@ -140,13 +148,19 @@ int empty_shift_4(uvec2 mask, ivec3 c) {
 // A 2^3 mask likewise.
 int empty_shift_2(uint mask, ivec3 c) { return (mask >> (c.x + 2 * c.y + 4 * c.z) & 1u) != 0u ? -1 : 0; }
 
-void query(uint entry, uint kind) {
-    const uint bit = 2u * entry + kind;
+// The tile query buffer holds 2 * entry + kind, or 2 * entry_count + entry for a brick that could stand in.
+void ask(uint bit) {
+#if PROGRESSIVE
+    // How many rays ask: several tiles may share a count, which only disturbs the order of their production.
+    atomicAdd(queries[uint(QUERY_CAPACITY) + bit % uint(QUERY_COUNTS)], 1u);
+#endif
     const uint old = atomicOr(usage[usage_query_offset + bit / 32u], 1u << (bit % 32u));
     if ((old >> (bit % 32u) & 1u) != 0u) return;  // another ray has asked
     const uint place = atomicAdd(counters.queries, 1u);
     if (place < uint(QUERY_CAPACITY)) queries[place] = bit;
 }
+
+void query(uint entry, uint kind) { ask(2u * entry + kind); }
 
 // Tells the cache that this pass used the brick.
 void touch(int slot) {
@@ -170,12 +184,49 @@ int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 struct Place {
     int slot;         // -1: none
     int tile_shift;   // log2 of the tile's side
+#if PROGRESSIVE
+    int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in
+#endif
     uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
 };
+
+// Log2 of a voxel's side.
+int voxel_shift_of(Place place) {
+#if PROGRESSIVE
+    return place.brick_shift - M_SHIFT;
+#else
+    return place.tile_shift - M_SHIFT;
+#endif
+}
 
 #define DESCENT_FOUND 0    // place holds a brick
 #define DESCENT_EMPTY 1    // nothing here: `empty_shift` is the side of the cell to step over
 #define DESCENT_MISSING 2  // the tile was asked for
+
+void use_brick(inout Place place, int slot) {
+    place.slot = slot;
+    place.summary = texelFetch(brick_masks, slot * MASK_WORDS_A_SLOT).xy;
+    touch(slot);
+}
+
+#if PROGRESSIVE
+// The nearest node above the ray's voxel that has a brick.
+struct Ancestor {
+    int slot;  // -1: none
+    int tile_shift;
+};
+
+// Shows the cell of side 1 << shift around the ray's voxel by the ancestor's brick, or as empty.
+int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int empty_shift) {
+    atomicAdd(counters.stood_in, 1u);
+    empty_shift = shift;
+    if (ancestor.slot < 0) return DESCENT_EMPTY;
+    place.tile_shift = shift;
+    place.brick_shift = ancestor.tile_shift;
+    use_brick(place, ancestor.slot);
+    return DESCENT_FOUND;
+}
+#endif
 
 // Finds the tile that the ray's cone asks for at its voxel: kd-restart.
 int descend(Ray ray, out Place place, out int empty_shift) {
@@ -184,9 +235,15 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     uvec4 node = texelFetch(nodes, 0);
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
+#if PROGRESSIVE
+    place.brick_shift = ROOT_SHIFT;
+#endif
     place.summary = uvec2(0u);
     empty_shift = ROOT_SHIFT;
     if (MAX_LEVEL > 0 && (node.x | node.y) == 0u) return DESCENT_EMPTY;  // nothing in the whole scene
+#if PROGRESSIVE
+    Ancestor ancestor = Ancestor(-1, ROOT_SHIFT);
+#endif
     for (int level = 0; level < MAX_LEVEL; ++level) {
         if (float(1 << (place.tile_shift - M_SHIFT)) <= width) break;
         const ivec3 c = (ray.voxel >> (place.tile_shift - N_SHIFT)) & (TREE_N - 1);
@@ -199,21 +256,32 @@ int descend(Ray ray, out Place place, out int empty_shift) {
             empty_shift = place.tile_shift - N_SHIFT + empty;
             return DESCENT_EMPTY;
         }
+#if PROGRESSIVE
+        if (node.w != 0u) ancestor = Ancestor(int(node.w) - 1, place.tile_shift);
+        else ask(2u * entry_count + entry);
+#endif
         if (node.z == 0u) {
             query(entry, QUERY_CHILDREN);
+#if PROGRESSIVE
+            if (stand_in) return stand_in_for_cell(ancestor, place.tile_shift - N_SHIFT, place, empty_shift);
+#endif
             return DESCENT_MISSING;
         }
         entry = node.z + uint(c.x + TREE_N * (c.y + TREE_N * c.z));
         node = texelFetch(nodes, int(entry));
         place.tile_shift -= N_SHIFT;
     }
+#if PROGRESSIVE
+    place.brick_shift = place.tile_shift;
+#endif
     if (node.w == 0u) {
         query(entry, QUERY_BRICK);
+#if PROGRESSIVE
+        if (stand_in) return stand_in_for_cell(ancestor, place.tile_shift, place, empty_shift);
+#endif
         return DESCENT_MISSING;
     }
-    place.slot = int(node.w) - 1;
-    place.summary = texelFetch(brick_masks, place.slot * MASK_WORDS_A_SLOT).xy;
-    touch(place.slot);
+    use_brick(place, int(node.w) - 1);
     return DESCENT_FOUND;
 }
 
@@ -223,7 +291,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 
 // Skips the empty cells of a brick.
 int skim(inout Ray ray, Place place, inout int turns) {
-    const int voxel_shift = place.tile_shift - M_SHIFT;
+    const int voxel_shift = voxel_shift_of(place);
     const ivec3 tile = ray.voxel >> place.tile_shift;
     const int first_mask = place.slot * MASK_WORDS_A_SLOT + SUMMARY_WORDS;
     // A straight line crosses at most 3 M - 2 cells of a brick.
@@ -282,24 +350,29 @@ int march(inout Ray ray) {
     Place place;
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
+#if PROGRESSIVE
+    place.brick_shift = ROOT_SHIFT;
+#endif
     place.summary = uvec2(0u);
     int turns = 0;
     for (;;) {
         ++turns;
         const int found = seek(ray, place, turns);
         if (found != SEEK_OCCUPIED) return found == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
-        const int voxel_shift = place.tile_shift - M_SHIFT;
+        const int voxel_shift = voxel_shift_of(place);
         const ivec3 tile = ray.voxel >> place.tile_shift;
         const ivec3 low = (ray.voxel >> voxel_shift) << voxel_shift;
+        const ivec3 brick_low = (ray.voxel >> (voxel_shift + M_SHIFT)) << (voxel_shift + M_SHIFT);
         const float side = float(1 << voxel_shift);
         const float t_in = ray.t;
         Sample s;
         s.slot = place.slot;
-        s.voxel = (low - (tile << place.tile_shift)) >> voxel_shift;
+        s.voxel = (low - brick_low) >> voxel_shift;
+        s.side = side;
         s.centre = vec3(low) + 0.5 * side;
         const bool goes_on = step_over(ray, voxel_shift);
         s.t = 0.5 * (t_in + ray.t);
-        s.middle = clamp((ray.origin + ray.direction * s.t - vec3(tile << place.tile_shift)) / side, vec3(0.0),
+        s.middle = clamp((ray.origin + ray.direction * s.t - vec3(brick_low)) / side, vec3(0.0),
                          vec3(float(BRICK_M)));
         if (!visit(ray, s) || !goes_on) return MARCH_DONE;
         if (any(notEqual(ray.voxel >> place.tile_shift, tile))) place.slot = -1;

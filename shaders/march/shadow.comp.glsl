@@ -1,7 +1,8 @@
 // One thread is one waiting shadow ray: from what a primary ray saw, to the light.
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1
-// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0
-// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0
+// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1
 #include "march/march.glsl"
 #include "march/shade.glsl"
 
@@ -18,9 +19,21 @@ vec3 receiver;
 vec3 receiver_normal;
 float own_height;
 float own_reach;
+float receiver_rise;  // of the ray over that plane, for each unit of its length
+
+#define OWN_HEIGHT 1.75  // in voxels
+float own_reach_of(float side) { return side * clamp(2.5 / receiver_rise, 8.0, 64.0); }
 
 bool visit(inout Ray ray, Sample s) {
-    const bool own = s.t < own_reach && dot(s.centre - receiver, receiver_normal) < own_height;
+    float height = own_height;
+    float reach = own_reach;
+#if PROGRESSIVE
+    if (stand_in) {  // its own voxels may be larger than they should be
+        height = max(height, OWN_HEIGHT * s.side);
+        reach = max(reach, own_reach_of(s.side));
+    }
+#endif
+    const bool own = s.t < reach && dot(s.centre - receiver, receiver_normal) < height;
     if (!own) visibility = behind(visibility, coverage_of(s));
     return visibility > OPAQUE_TRANSMITTANCE;
 }
@@ -47,9 +60,9 @@ void main() {
     const vec3 to_light = direction_to_light(receiver);
     // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
     // at a low angle stays among them for longer.
-    const float rise = max(dot(receiver_normal, to_light), 1e-3);
-    own_height = 1.75 * side;
-    own_reach = side * clamp(2.5 / rise, 8.0, 64.0);
+    receiver_rise = max(dot(receiver_normal, to_light), 1e-3);
+    own_height = OWN_HEIGHT * side;
+    own_reach = own_reach_of(side);
 
     const float reach = view.light.w > 0.5 ? distance(view.light.xyz, receiver) : 1e30;
     Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
@@ -57,7 +70,7 @@ void main() {
     if (all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)))) {
         visibility = 1.0;
         // Until here all voxels are its own: those that are not lie at least half a diagonal under their centres.
-        ray.t = min(0.88 * side / rise, own_reach);
+        ray.t = min(0.88 * side / receiver_rise, own_reach);
         inside = enter_root(ray);
     } else {
         load_position(ray, state);
