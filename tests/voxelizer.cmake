@@ -12,3 +12,8 @@ cairn_test(voxelizer_mask_test SOURCES voxelizer_mask_test.cpp gl_fixture.h latt
            LIBRARIES ${voxelizer_libraries})
 cairn_test(voxelizer_scenes_test SOURCES voxelizer_scenes_test.cpp gl_fixture.h lattice_surface.h
            LIBRARIES ${voxelizer_libraries} DEFINITIONS ${voxelizer_definitions} TIMEOUT 120)
+cairn_test(voxelizer_metamorphic_test SOURCES voxelizer_metamorphic_test.cpp voxelizer_fixture.h lattice_surface.h
+           LIBRARIES ${voxelizer_libraries} DEFINITIONS ${voxelizer_definitions})
+cairn_test(voxelizer_fuzz_test
+           SOURCES voxelizer_fuzz_test.cpp clipped_triangle.h voxelizer_fixture.h lattice_surface.h
+           LIBRARIES ${voxelizer_libraries})
