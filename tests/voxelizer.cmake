@@ -17,3 +17,7 @@ cairn_test(voxelizer_metamorphic_test SOURCES voxelizer_metamorphic_test.cpp vox
 cairn_test(voxelizer_fuzz_test
            SOURCES voxelizer_fuzz_test.cpp clipped_triangle.h voxelizer_fixture.h lattice_surface.h
            LIBRARIES ${voxelizer_libraries})
+cairn_test(voxelizer_traps_test
+           SOURCES voxelizer_traps_test.cpp gltf_file.h scratch_folder.h test_scenes.h test_scenes.cpp
+                   voxelizer_fixture.h lattice_surface.h
+           LIBRARIES ${voxelizer_libraries} nlohmann_json::nlohmann_json)
