@@ -120,7 +120,7 @@ void expect_agreement(std::uint32_t seed, int trials, const MakeTrial& make_tria
     Tally tally;
     for (int i = 0; i < trials; ++i) {
         const Trial trial = make_trial(random);
-        const bool expected = ClippedTriangle<Number>(trial.triangle).meets(trial.low, trial.high);
+        const bool expected = is_left_in_box<Number>(trial.triangle, trial.low, trial.high);
         ASSERT_EQ(triangle_meets_box(trial.triangle, trial.low, trial.high), expected)
             << "seed " << seed << ", trial " << i << ": " << to_string(trial);
         count(tally, trial, expected);
@@ -141,7 +141,7 @@ TEST(SeparatingAxes, AgreeWithClippingOnAMillionTrianglesOnVoxelPlanes) {
 
 // 128 bits are all that both use above: numbers without end tell whether they are enough where they must be.
 TEST(SeparatingAxes, AgreeWithClippingInNumbersWithoutEnd) {
-    expect_agreement<mpz_class>(3, 300000, [](Random& random) { return within(farthest, random); });
+    expect_agreement<mpz_class>(3, 100000, [](Random& random) { return within(farthest, random); });
 }
 
 TEST(SeparatingAxes, HoldAtTheEdgeOfTheirRange) {
@@ -153,7 +153,7 @@ TEST(SeparatingAxes, HoldAtTheEdgeOfTheirRange) {
                                               std::tuple(glm::i64vec3(-5), glm::i64vec3(0), true),
                                               std::tuple(glm::i64vec3(-5), glm::i64vec3(0, -1, 0), false)}) {
         EXPECT_EQ(triangle_meets_box(t, low, high), expected) << to_string(Trial{t, low, high});
-        EXPECT_EQ(ClippedTriangle<mpz_class>(t).meets(low, high), expected) << to_string(Trial{t, low, high});
+        EXPECT_EQ(is_left_in_box<mpz_class>(t, low, high), expected) << to_string(Trial{t, low, high});
     }
 }
 
