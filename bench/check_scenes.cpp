@@ -112,9 +112,9 @@ std::string row_of(const Check& check, const Outcome& outcome) {
         return outcome.figures.contains(key) ? outcome.figures[key].dump() : std::string();
     };
     const std::string moment = check.animation_seconds ? fmt::format("{:.3f}", *check.animation_seconds) : "";
-    return fmt::format("\"{}\",{},{},{},{},{},{},{},{:.2f}", check.name, moment, check.resolution,
+    return fmt::format("\"{}\",{},{},{},{},{},{},{},{:.2f},{}", check.name, moment, check.resolution,
                        figure("triangles"), figure("occupied"), figure("missing"), figure("extra"),
-                       outcome.word, outcome.seconds);
+                       outcome.word, outcome.seconds, figure("driver"));
 }
 
 }  // namespace
@@ -131,7 +131,7 @@ int main(int argc, char** argv) try {
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
     std::ofstream csv(folder / "check.csv");
-    csv << "scene,animation_seconds,resolution,triangles,occupied,missing,extra,outcome,seconds\n";
+    csv << "scene,animation_seconds,resolution,triangles,occupied,missing,extra,outcome,seconds,driver\n";
     int not_same = 0;
     const std::vector<Check> checks = all_checks(argv[2], resolutions);
     for (const Check& check : checks) {
