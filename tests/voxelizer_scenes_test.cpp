@@ -174,6 +174,28 @@ TEST_P(EveryFile, HasTheBitsOfTheExactReferenceInDeepTiles) {
     }
 }
 
+// Most triangles that reach such a grid reach far past it.
+TEST_P(EveryFile, HasTheBitsOfTheExactReferenceInTinyBounds) {
+    const std::string& path = GetParam().paths.front();
+    const scenes::Scene scene = scenes::load(path);
+    const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
+    if (snapshot.triangle_count > most_triangles) GTEST_SKIP() << "too large to be quick";
+    const Surface all = build_surface(scene, snapshot, grid_around(snapshot.bounds, coarse));
+    if (all.chunks.empty()) GTEST_SKIP() << "all of it is hidden";
+    const double extent = all.grid.voxel_size * coarse;
+    Random random(82);
+    for (const double part : {1e-1, 1e-2, 1e-4}) {
+        const auto& positions = all.chunks[0].positions;
+        const auto& vertex = positions[std::size_t(random.between(0, std::ssize(positions) - 1))];
+        const glm::dvec3 middle = all.grid.world_from_lattice({vertex[0], vertex[1], vertex[2]});
+        scenes::Bounds bounds;
+        bounds.add(middle - 0.5 * part * extent);
+        bounds.add(middle + 0.5 * part * extent);
+        const Surface surface = build_surface(scene, snapshot, grid_over(bounds, 24));
+        check(surface, whole(surface.grid), fmt::format("{}, a part of {} around a vertex", path, part));
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Data, EveryFile, ::testing::ValuesIn(all_files()),
                          [](const auto& test) { return test.param.name; });
 #endif
