@@ -133,6 +133,28 @@ protected:
         EXPECT_TRUE(truth.count() > 0 || may_be_empty) << what << ": there is nothing to compare";
     }
 
+    void check_deep_tiles(const Surface& surface) {
+        for (const int level : {9, 14, 19, 24}) {
+            const glm::ivec3 voxel = random_vertex(surface) >> (LATTICE_BITS - level);
+            check(surface, {level, voxel - glm::ivec3(random_.point(0, 11)), glm::ivec3(12)},
+                  fmt::format("a tile at level {}", level));
+        }
+    }
+
+    /// Most triangles that reach such a grid reach far past it.
+    void check_tiny_bounds(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
+                           const Surface& whole_surface) {
+        const double extent = whole_surface.grid.voxel_size * coarse;
+        for (const double part : {1e-1, 1e-2, 1e-4}) {
+            const glm::dvec3 middle = whole_surface.grid.world_from_lattice(random_vertex(whole_surface));
+            scenes::Bounds bounds;
+            bounds.add(middle - 0.5 * part * extent);
+            bounds.add(middle + 0.5 * part * extent);
+            const Surface surface = build_surface(scene, snapshot, grid_over(bounds, 24));
+            check(surface, whole(surface.grid), fmt::format("a grid over a part of {}", part));
+        }
+    }
+
     /// At rest, and in the middle of the first animation.
     static std::vector<scenes::When> moments(const scenes::Scene& scene) {
         std::vector<scenes::When> out(1);
@@ -142,57 +164,29 @@ protected:
     }
 
 private:
+    glm::ivec3 random_vertex(const Surface& surface) {
+        const auto& positions = surface.chunks[0].positions;
+        const auto& vertex = positions[std::size_t(random_.between(0, std::ssize(positions) - 1))];
+        return {vertex[0], vertex[1], vertex[2]};
+    }
+
     std::optional<ConservativeVoxelizer> voxelizer_;
+    Random random_{81};
 };
 
-TEST_P(EveryFile, HasTheBitsOfTheExactReference) {
+TEST_P(EveryFile, IsExactAsAWholeInDeepTilesAndInTinyBounds) {
     for (const std::string& path : GetParam().paths) {
         const scenes::Scene scene = scenes::load(path);
         for (const scenes::When& when : moments(scene)) {
+            SCOPED_TRACE(fmt::format("{} at {} s", path, when.seconds));
             const scenes::Snapshot snapshot = scenes::take_snapshot(scene, when);
             if (snapshot.triangle_count > most_triangles) GTEST_SKIP() << "too large to be quick";
             const Surface surface = build_surface(scene, snapshot, grid_around(snapshot.bounds, coarse));
-            check(surface, whole(surface.grid), fmt::format("{} at {} s", path, when.seconds));
+            check(surface, whole(surface.grid), "the whole");
+            if (surface.chunks.empty()) continue;  // a mask hides all of it
+            check_deep_tiles(surface);
+            check_tiny_bounds(scene, snapshot, surface);
         }
-    }
-}
-
-TEST_P(EveryFile, HasTheBitsOfTheExactReferenceInDeepTiles) {
-    const std::string& path = GetParam().paths.front();
-    const scenes::Scene scene = scenes::load(path);
-    const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
-    if (snapshot.triangle_count > most_triangles) GTEST_SKIP() << "too large to be quick";
-    const Surface surface = build_surface(scene, snapshot, grid_around(snapshot.bounds, coarse));
-    if (surface.chunks.empty()) GTEST_SKIP() << "all of it is hidden";
-    Random random(81);
-    for (const int level : {9, 14, 19, 24}) {
-        const SurfaceChunk& chunk = surface.chunks[0];
-        const auto& vertex = chunk.positions[std::size_t(random.between(0, std::ssize(chunk.positions) - 1))];
-        const glm::ivec3 voxel = glm::ivec3(vertex[0], vertex[1], vertex[2]) >> (LATTICE_BITS - level);
-        check(surface, {level, voxel - glm::ivec3(random.point(0, 11)), glm::ivec3(12)},
-              fmt::format("{}, level {}", path, level));
-    }
-}
-
-// Most triangles that reach such a grid reach far past it.
-TEST_P(EveryFile, HasTheBitsOfTheExactReferenceInTinyBounds) {
-    const std::string& path = GetParam().paths.front();
-    const scenes::Scene scene = scenes::load(path);
-    const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
-    if (snapshot.triangle_count > most_triangles) GTEST_SKIP() << "too large to be quick";
-    const Surface all = build_surface(scene, snapshot, grid_around(snapshot.bounds, coarse));
-    if (all.chunks.empty()) GTEST_SKIP() << "all of it is hidden";
-    const double extent = all.grid.voxel_size * coarse;
-    Random random(82);
-    for (const double part : {1e-1, 1e-2, 1e-4}) {
-        const auto& positions = all.chunks[0].positions;
-        const auto& vertex = positions[std::size_t(random.between(0, std::ssize(positions) - 1))];
-        const glm::dvec3 middle = all.grid.world_from_lattice({vertex[0], vertex[1], vertex[2]});
-        scenes::Bounds bounds;
-        bounds.add(middle - 0.5 * part * extent);
-        bounds.add(middle + 0.5 * part * extent);
-        const Surface surface = build_surface(scene, snapshot, grid_over(bounds, 24));
-        check(surface, whole(surface.grid), fmt::format("{}, a part of {} around a vertex", path, part));
     }
 }
 
