@@ -10,7 +10,7 @@ packages=(
   # opened when the program runs: OpenGL without a GPU and without a display
   libegl1 libgl1-mesa-dri
   # to test, and to have something to show
-  libgtest-dev glslang-tools xvfb assimp-testmodels
+  libgtest-dev libgmp-dev glslang-tools xvfb assimp-testmodels
 )
 
 # Mesa 25.1 ended OSMesa, so a newer distribution may lack it; EGL then takes its place.

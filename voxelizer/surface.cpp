@@ -7,6 +7,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include "base/error.h"
 #include "shaders/interop/config.h"
@@ -206,9 +207,17 @@ void flatten(Surface& surface, const scenes::Scene& scene, const scenes::Snapsho
             triangles += items[last].primitive->element_count();
         }
         std::vector<Part> parts(last - first);
-        tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
-            parts[i] = Flattener(scene, items[first + i], surface.grid, materials, attributes).run();
-        });
+        // With the caller's floating-point mode: without it, threads have that of whoever used TBB first, and
+        // Embree, for one, flushes denormal numbers to zero.
+        tbb::task_group_context context(
+            tbb::task_group_context::isolated,
+            tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
+        tbb::parallel_for(
+            std::size_t(0), parts.size(),
+            [&](std::size_t i) {
+                parts[i] = Flattener(scene, items[first + i], surface.grid, materials, attributes).run();
+            },
+            context);
         for (const Part& part : parts) {
             append(surface, part.mesh);
             surface.far_triangles.insert(surface.far_triangles.end(), part.far_triangles.begin(),
