@@ -25,11 +25,16 @@ BitmaskPyramid PyramidBuilder::build(const gl::Buffer& bits, const glm::ivec3& s
     std::vector<BitGrid> levels;
     levels.push_back(read_bits(bits, size));
     const gl::Buffer* fine = &bits;
-    std::array<gl::Buffer, 2> coarse;
+    const auto halved = [](const glm::ivec3& fine_size) { return (fine_size + 1) / 2; };
+    std::size_t coarse_count = 0;
+    for (glm::ivec3 level = size; level != glm::ivec3(1); level = halved(level))
+        ++coarse_count;
+    coarse_.resize(coarse_count);  // now, so that `fine` points at nothing that moves
     for (glm::ivec3 fine_size = size; fine_size != glm::ivec3(1);) {
-        const glm::ivec3 half = (fine_size + 1) / 2;
-        gl::Buffer& out = coarse[levels.size() % 2];
-        out = gl::Buffer(std::max<std::size_t>(bit_bytes(half), 16), "voxel pyramid");
+        const glm::ivec3 half = halved(fine_size);
+        gl::Buffer& out = coarse_[levels.size() - 1];
+        const std::size_t bytes = std::max<std::size_t>(bit_bytes(half), 16);
+        if (out.size_bytes() != bytes) out = gl::Buffer(bytes, "voxel pyramid");
         fine->bind_storage(SSBO_HALVE_FINE);
         out.bind_storage(SSBO_HALVE_COARSE);
         halve_.set("fine_size", fine_size);

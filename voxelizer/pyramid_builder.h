@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "gl/buffer.h"
 #include "gl/program.h"
@@ -20,6 +20,7 @@ public:
 
 private:
     gl::Program halve_;
+    std::vector<gl::Buffer> coarse_;  ///< one a level but the finest; kept, so that frames alike create none
 };
 
 /// Bytes of BitGrid::words.

@@ -4,6 +4,8 @@
 
 // Vertices are rounded once to this lattice; the root cube of a grid is 2^LATTICE_BITS units a side.
 #define LATTICE_BITS 24
+// World coordinates further away than this many lattice units are an error.
+#define LATTICE_WORLD_LIMIT 1099511627776.0
 
 // A surface is cut in chunks of at most this many triangles, so that each of its buffers stays under the smallest
 // shader-storage limit in use (128 MiB). A triangle's global number is chunk * SURFACE_CHUNK_TRIANGLES + local.
