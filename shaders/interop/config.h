@@ -41,6 +41,13 @@
 #define TEXEL_UNITS 256
 #define TEXEL_COORDINATE_LIMIT 33554432.0
 
+// Surfaces that move (shaders/voxelize/deform.comp.glsl).
+#define DEFORM_GROUP 64
+#define DEFORM_NONE 4294967295u
+// Loop turns for one vertex: its morph targets, and DEFORM_SET_TURNS for each four influences. Past it, the CPU deforms.
+#define DEFORM_TURNS 16384
+#define DEFORM_SET_TURNS 5
+
 // Bits of SurfaceMaterial.flags
 #define MATERIAL_WRAP_S_SHIFT 0  // 2 bits: 0 repeat, 1 mirrored repeat, 2 clamp to edge
 #define MATERIAL_WRAP_T_SHIFT 2
