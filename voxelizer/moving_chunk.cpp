@@ -28,10 +28,25 @@ std::uint32_t append_vectors(std::vector<Vector>& vectors, const std::vector<glm
     return first;
 }
 
-interop::DeformInfluences packed(const scenes::SkinWeights& skin) {
-    const auto joint = [&](int i) { return std::uint32_t(skin.joints[i]); };
-    return {{joint(0) | joint(1) << 16, joint(2) | joint(3) << 16},
-            {skin.weights[0], skin.weights[1], skin.weights[2], skin.weights[3]}};
+/// Appends the sets of a vertex, with the influences of weight 0 left for the end. They add nothing, so the
+/// sum is the same.
+void append_influences(std::vector<interop::DeformInfluences>& sets, const scenes::Primitive& primitive,
+                       std::uint32_t vertex) {
+    const std::size_t first = sets.size();
+    sets.resize(first + 1 + primitive.more_skin.size());
+    std::size_t next = 0;
+    const auto append = [&](const scenes::SkinWeights& skin) {
+        for (int i = 0; i < 4; ++i) {
+            if (skin.weights[i] == 0.0F) continue;
+            interop::DeformInfluences& set = sets[first + next / 4];
+            set.joints[next % 4 / 2] |= std::uint32_t(skin.joints[i]) << (16 * (next % 2));
+            set.weights[next % 4] = skin.weights[i];
+            ++next;
+        }
+    };
+    append(primitive.skin[vertex]);
+    for (const auto& set : primitive.more_skin)
+        append(set[vertex]);
 }
 
 }  // namespace
@@ -88,15 +103,12 @@ void MovingChunk::add_run(const scenes::Snapshot& snapshot, std::span<const Surf
         parts.vertices.push_back({std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
                                   std::bit_cast<std::uint32_t>(p.z), std::uint32_t(parts.items.size())});
         if (!item.skinned) continue;
-        parts.influences.push_back(packed(primitive.skin[source.vertex]));
-        for (const auto& set : primitive.more_skin)
-            parts.influences.push_back(packed(set[source.vertex]));
+        append_influences(parts.influences, primitive, source.vertex);
     }
     out.first_target = std::uint32_t(targets_.size());
     out.target_count = std::uint32_t(primitive.morph_targets.size());
     add_targets(item, run, out.first_normal != DEFORM_NONE, parts);
-    most_turns_ =
-        std::max<std::size_t>(most_turns_, out.target_count + std::size_t(DEFORM_SET_TURNS) * out.set_count);
+    most_turns_ = std::max<std::size_t>(most_turns_, out.target_count + 4 * std::size_t(out.set_count));
     parts.items.push_back(out);
 }
 

@@ -44,9 +44,7 @@
 // Surfaces that move (shaders/voxelize/deform.comp.glsl).
 #define DEFORM_GROUP 64
 #define DEFORM_NONE 4294967295u
-// Loop turns for one vertex: its morph targets, and DEFORM_SET_TURNS for each four influences. Past it, the CPU deforms.
-#define DEFORM_TURNS 16384
-#define DEFORM_SET_TURNS 5
+#define DEFORM_TURNS 16384  // morph targets and influences of a vertex: loop turns. Past it, the CPU deforms.
 
 // Bits of SurfaceMaterial.flags
 #define MATERIAL_WRAP_S_SHIFT 0  // 2 bits: 0 repeat, 1 mirrored repeat, 2 clamp to edge

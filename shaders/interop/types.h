@@ -50,7 +50,7 @@ struct DeformItem {
     uint target_count;
 };
 
-// Four influences of a skin on a vertex.
+// Four influences of a skin on a vertex. A vertex has those that count first; the first weight of 0 ends them.
 struct DeformInfluences {
     uint joints[2];        // 16 bits each
     float weights[4];

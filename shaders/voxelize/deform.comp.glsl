@@ -50,23 +50,21 @@ vec3 vector_at(uint number) {
 // The weighted sum of the joints' matrices; the first joint's where all weights are 0.
 Affine skin_matrix(DeformItem item, uint vertex) {
     precise Affine sum = Affine(dvec3(0.0), dvec3(0.0), dvec3(0.0), dvec3(0.0));
-    bool any = false;
-    for (uint set = 0u; set < item.set_count; ++set) {
-        const uint place = item.first_influence + vertex * item.set_count + set;
-        for (uint i = 0u; i < 4u; ++i) {
-            const float weight = influences[place].weights[i];
-            if (weight == 0.0) continue;
-            const double w = double(weight);
-            const uint joint = influences[place].joints[i / 2u] >> (16u * (i % 2u)) & 0xFFFFu;
-            const Affine matrix = affine(item.first_joint + joint);
-            sum.x = sum.x + w * matrix.x;
-            sum.y = sum.y + w * matrix.y;
-            sum.z = sum.z + w * matrix.z;
-            sum.origin = sum.origin + w * matrix.origin;
-            any = true;
+    const uint first = item.first_influence + vertex * item.set_count;
+    for (uint i = 0u; i < 4u * item.set_count; ++i) {
+        const float weight = influences[first + i / 4u].weights[i % 4u];
+        if (weight == 0.0) {
+            if (i == 0u) sum = affine(item.first_joint);
+            break;
         }
+        const double w = double(weight);
+        const uint joint = influences[first + i / 4u].joints[i % 4u / 2u] >> (16u * (i % 2u)) & 0xFFFFu;
+        const Affine matrix = affine(item.first_joint + joint);
+        sum.x = sum.x + w * matrix.x;
+        sum.y = sum.y + w * matrix.y;
+        sum.z = sum.z + w * matrix.z;
+        sum.origin = sum.origin + w * matrix.origin;
     }
-    if (!any) sum = affine(item.first_joint);
     return sum;
 }
 
