@@ -1,7 +1,5 @@
 // Surfaces moved on the GPU hold the bits of snapshots taken on the CPU, and cost no memory a frame.
-#include "voxelizer/moving_surface.h"
 
-#include <cstdlib>
 #include <limits>
 
 #include <fmt/format.h>
@@ -12,107 +10,14 @@
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "tests/count_news.h"
-#include "tests/gl_fixture.h"
-#include "tests/lattice_surface.h"
+#include "tests/moving_fixture.h"
 #include "tests/moving_scenes.h"
-#include "voxelizer/conservative_voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {
 
 using namespace cairn::test;
 using scenes::When;
-
-When moment(double seconds, int animation) {
-    return {seconds, animation, std::nullopt};
-}
-
-/// The greatest difference of two packed normals in steps of their coordinates.
-int steps_between(std::uint32_t a, std::uint32_t b) {
-    const auto part = [](std::uint32_t packed, int shift) {
-        return int(std::int16_t(std::uint16_t(packed >> shift)));
-    };
-    return std::max(std::abs(part(a, 0) - part(b, 0)), std::abs(part(a, 16) - part(b, 16)));
-}
-
-template <typename T>
-std::vector<T> all_of(const gl::Buffer& buffer, std::size_t count) {
-    return buffer.read_all<T>(count);
-}
-
-/// Passes when the vertices are those of the snapshot's surface, bit for bit, and the normals to a step.
-::testing::AssertionResult same_vertices(const GpuSurface& ours, const Surface& truth) {
-    if (ours.chunks.size() != truth.chunks.size()) return ::testing::AssertionFailure() << "chunks differ";
-    for (std::size_t c = 0; c < truth.chunks.size(); ++c) {
-        const SurfaceChunk& chunk = truth.chunks[c];
-        if (ours.chunks[c].triangle_count != chunk.triangles.size())
-            return ::testing::AssertionFailure()
-                   << ours.chunks[c].triangle_count << " triangles, not " << chunk.triangles.size();
-        const auto positions =
-            all_of<std::array<std::int32_t, 3>>(ours.chunks[c].positions, chunk.positions.size());
-        for (std::size_t i = 0; i < positions.size(); ++i) {
-            const auto& p = positions[i];
-            const auto& q = chunk.positions[i];
-            if (p != q)
-                return ::testing::AssertionFailure() << fmt::format("vertex {}: ({} {} {}), not ({} {} {})",
-                                                                    i, p[0], p[1], p[2], q[0], q[1], q[2]);
-        }
-        const auto attributes =
-            all_of<interop::SurfaceAttributes>(ours.chunks[c].attributes, chunk.attributes.size());
-        for (std::size_t i = 0; i < attributes.size(); ++i) {
-            if (steps_between(attributes[i].normal, chunk.attributes[i].normal) > 1 ||
-                (attributes[i].normal == 0) != (chunk.attributes[i].normal == 0) ||
-                attributes[i].color != chunk.attributes[i].color ||
-                attributes[i].texcoord != chunk.attributes[i].texcoord)
-                return ::testing::AssertionFailure()
-                       << fmt::format("attributes of vertex {}: normal {:08x}, not {:08x}", i,
-                                      attributes[i].normal, chunk.attributes[i].normal);
-        }
-    }
-    return ::testing::AssertionSuccess();
-}
-
-class Moving : public GlTest {
-protected:
-    /// Moves a surface through `times` in a grid around all of them, and compares each frame.
-    void expect_the_snapshots(const scenes::Scene& scene, const When& when, const std::vector<double>& times,
-                              int resolution) {
-        const Grid grid = grid_around(scenes::bounds_over_animation(scene, when, 8.0), resolution);
-        MovingSurface moving(scene, when, grid, {.attributes = true});
-        BitGrid bits;
-        for (const double seconds : times) {
-            const std::string where =
-                fmt::format("{} animation {} at {} s", scene.name, when.animation.value_or(-1), seconds);
-            const scenes::Snapshot snapshot =
-                scenes::take_snapshot(scene, {seconds, when.animation, when.scene_index});
-            const Surface truth = build_surface(scene, snapshot, grid, {.attributes = true});
-            const GpuSurface& ours = moving.move_to(seconds);
-            EXPECT_FALSE(moving.was_on_cpu()) << where;
-            // Where every triangle reaches the cube, as here at most moments, the two lists are the same.
-            if (truth.triangle_count == moving.triangle_count()) {
-                EXPECT_TRUE(same_vertices(ours, truth)) << where;
-                ++vertices_compared_;
-            }
-            voxelizer().voxelize_into(ours, whole(grid), bits);
-            const BitGrid exact = reference::exact_voxels(truth, whole(grid));
-            EXPECT_TRUE(same_bits(bits, exact)) << where;
-            EXPECT_GT(exact.count(), 0U) << where;
-        }
-    }
-
-    ConservativeVoxelizer& voxelizer() {
-        if (!voxelizer_) voxelizer_ = std::make_unique<ConservativeVoxelizer>();
-        return *voxelizer_;
-    }
-    void TearDown() override {
-        voxelizer_.reset();
-        GlTest::TearDown();
-    }
-    int vertices_compared_ = 0;
-
-private:
-    std::unique_ptr<ConservativeVoxelizer> voxelizer_;
-};
 
 TEST_F(Moving, HoldsTheBitsOfSnapshots) {
     for (const std::uint32_t seed : {1U, 2U, 3U}) {
@@ -188,11 +93,11 @@ TEST_F(Moving, LeavesTheCubeAndComesBack) {
     const scenes::Scene scene = sliding_triangle(8.0F);
     const Grid grid = grid_over({glm::dvec3(0.0), glm::dvec3(1.0)}, 32);
     MovingSurface moving(scene, moment(2.0, 0), grid);
-    EXPECT_EQ(voxelizer().voxelize(moving.surface(), whole(grid)).count(), 0U);
+    EXPECT_EQ(marker().voxelize(moving.surface(), whole(grid)).count(), 0U);
     BitGrid bits;
     for (const double seconds : {0.0, 0.12, 0.2, 1.0, 2.0, 0.05}) {
         const Surface truth = build_surface(scene, scenes::take_snapshot(scene, moment(seconds, 0)), grid);
-        voxelizer().voxelize_into(moving.move_to(seconds), whole(grid), bits);
+        marker().voxelize_into(moving.move_to(seconds), whole(grid), bits);
         // Past 2 the vertices are further away than the shaders can hold, but the triangle misses the cube.
         EXPECT_FALSE(moving.was_on_cpu()) << seconds;
         EXPECT_TRUE(same_bits(bits, reference::exact_voxels(truth, whole(grid)))) << seconds;
@@ -212,7 +117,7 @@ TEST_F(Moving, APartOfASceneIsExactToo) {
             const Surface truth =
                 build_surface(scene, scenes::take_snapshot(scene, moment(seconds, 0)), grid);
             EXPECT_LT(truth.triangle_count, moving.triangle_count());
-            const BitGrid bits = voxelizer().voxelize(moving.move_to(seconds), whole(grid));
+            const BitGrid bits = marker().voxelize(moving.move_to(seconds), whole(grid));
             EXPECT_EQ(moving.was_on_cpu(), !truth.far_triangles.empty()) << "seed " << seed;
             EXPECT_TRUE(same_bits(bits, reference::exact_voxels(truth, whole(grid))))
                 << "seed " << seed << " at " << seconds << " s";
@@ -251,7 +156,7 @@ TEST_F(Moving, TheCpuBuildsFramesThatReachTooFar) {
     const std::vector<double> times = {0.0, 0.4, 0.9, 1.05, 1.15, 2.0, 0.0};
     for (const double seconds : times) {
         const Surface truth = build_surface(scene, scenes::take_snapshot(scene, moment(seconds, 0)), grid);
-        voxelizer().voxelize_into(moving.move_to(seconds), whole(grid), bits);
+        marker().voxelize_into(moving.move_to(seconds), whole(grid), bits);
         EXPECT_EQ(moving.was_on_cpu(), !truth.far_triangles.empty()) << seconds;
         EXPECT_TRUE(same_bits(bits, reference::exact_voxels(truth, whole(grid)))) << seconds;
         on_cpu += moving.was_on_cpu() ? 1 : 0;
@@ -271,7 +176,7 @@ TEST_F(Moving, SaysWhatASnapshotSaysWhenVerticesAreLost) {
         } catch (const Error& error) {
             EXPECT_EQ(error.fault(), Fault::input);
             moving.move_to(0.0);  // and goes on
-            EXPECT_GT(voxelizer().voxelize(moving.surface(), whole(grid)).count(), 0U);
+            EXPECT_GT(marker().voxelize(moving.surface(), whole(grid)).count(), 0U);
             return std::string(error.what());
         }
         return std::string();
@@ -365,25 +270,25 @@ TEST_F(Moving, FramesAfterTheFirstTakeNoMemoryAndBuildNoShader) {
         MovingSurface moving(scene, when, grid, {.attributes = true});
         EXPECT_GT(created.count(), 0) << "nothing is counted";
         BitGrid bits;
-        voxelizer().voxelize_into(moving.surface(), whole(grid), bits);
-        EXPECT_GT(voxelizer().voxelize_pyramid(moving.surface(), whole(grid)).level_count(), 1);
+        marker().voxelize_into(moving.surface(), whole(grid), bits);
+        EXPECT_GT(marker().voxelize_pyramid(moving.surface(), whole(grid)).level_count(), 1);
     }
     MovingSurface moving(scene, when, grid, {.attributes = true});
     BitGrid bits;
-    voxelizer().voxelize_into(moving.surface(), whole(grid), bits);
+    marker().voxelize_into(moving.surface(), whole(grid), bits);
     const Creations created;
     // Twice: in the first round, llvmpipe's compiler takes memory at the first use of each program.
     for (int frame = 0; frame < 80; ++frame) {
         const std::size_t news_before = news();
         const std::uint32_t* const words = bits.words.data();
         const GpuSurface& surface = moving.move_to(frame % 40 / 20.0);
-        voxelizer().voxelize_into(surface, whole(grid), bits);
+        marker().voxelize_into(surface, whole(grid), bits);
         const std::size_t taken = news() - news_before;
         EXPECT_EQ(frame < 40 ? 0 : taken, 0U) << "frame " << frame;
         EXPECT_EQ(bits.words.data(), words) << "frame " << frame;
         EXPECT_GT(bits.count(), 0U) << "frame " << frame;
         EXPECT_FALSE(moving.was_on_cpu()) << "frame " << frame;
-        EXPECT_TRUE(voxelizer().voxelize_pyramid(surface, whole(grid)).level(0) == bits);
+        EXPECT_TRUE(marker().voxelize_pyramid(surface, whole(grid)).level(0) == bits);
     }
     const Surface truth = build_surface(scene, scenes::take_snapshot(scene, moment(39 / 20.0, 0)), grid);
     EXPECT_TRUE(truth.has_mask);
@@ -420,7 +325,7 @@ TEST_F(Moving, AnEmptySceneHasNoVoxels) {
     scene.scenes.resize(1);
     const Grid grid = unit_grid(8);
     MovingSurface moving(scene, {}, grid);
-    EXPECT_EQ(voxelizer().voxelize(moving.move_to(1.0), whole(grid)).count(), 0U);
+    EXPECT_EQ(marker().voxelize(moving.move_to(1.0), whole(grid)).count(), 0U);
 }
 
 #ifdef CAIRN_SCENE_DATA

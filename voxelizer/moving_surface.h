@@ -16,7 +16,7 @@ namespace cairn::voxelizer {
 
 /// The surface of an animated scene, moved to any moment on the GPU: morph targets, skins with any number of
 /// influences, nodes. Built once for a grid (bounds_over_animation finds bounds that serve all frames), then
-/// voxelized by any Voxelizer. Moving it creates nothing, on the CPU or the GPU.
+/// voxelized by any Voxelizer. Moving it takes no memory, on the CPU or the GPU.
 ///
 ///     MovingSurface surface(scene, {.animation = 0}, grid);
 ///     for (const double seconds : scenes::frame_times(scene, {.animation = 0}, 30.0))
@@ -30,8 +30,8 @@ namespace cairn::voxelizer {
 ///   not round quotients and roots alike.
 ///
 /// A frame is built on the CPU, and uploaded as a new surface, where shaders cannot do it exactly: a triangle
-/// reaches the root cube from more than 2^24 units past it (only explicit bounds make such), or a primitive
-/// has more than DEFORM_TURNS morph targets. `was_on_cpu` tells.
+/// reaches the root cube from more than 2^24 units past it (only explicit bounds make such), or a vertex has
+/// more than DEFORM_TURNS morph targets and influences. `was_on_cpu` tells.
 class MovingSurface {
 public:
     /// Stands at `when.seconds`. The scene must outlive the surface; needs the current context of its
