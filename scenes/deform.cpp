@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scenes/transform.h"
+
 namespace cairn::scenes {
 namespace {
 
@@ -24,10 +26,15 @@ void add_displacements(std::vector<glm::vec3>& vectors, const std::vector<glm::v
         vectors[i] += weight * displacements[i];
 }
 
-void blend(glm::dmat4& sum, const SkinWeights& vertex, std::span<const glm::dmat4> matrices) {
-    for (int c = 0; c < 4; ++c)
-        if (vertex.weights[c] != 0.0F)
-            sum += static_cast<double>(vertex.weights[c]) * matrices[vertex.joints[c]];
+/// Adds four influences; tells whether any counts.
+bool blend(glm::dmat4& sum, const SkinWeights& vertex, std::span<const glm::dmat4> matrices) {
+    bool any = false;
+    for (int c = 0; c < 4; ++c) {
+        if (vertex.weights[c] == 0.0F) continue;
+        sum += static_cast<double>(vertex.weights[c]) * matrices[vertex.joints[c]];
+        any = true;
+    }
+    return any;
 }
 
 }  // namespace
@@ -50,11 +57,11 @@ void skin(const Primitive& primitive, std::span<const glm::dmat4> world_from_mes
     if (world_from_mesh.empty()) return;
     for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
         glm::dmat4 matrix(0.0);
-        if (!primitive.skin.empty()) blend(matrix, primitive.skin[i], world_from_mesh);
+        bool any = !primitive.skin.empty() && blend(matrix, primitive.skin[i], world_from_mesh);
         for (const auto& set : primitive.more_skin)
-            blend(matrix, set[i], world_from_mesh);
-        if (matrix == glm::dmat4(0.0)) matrix = world_from_mesh[0];
-        vertices.positions[i] = glm::vec3(matrix * glm::dvec4(vertices.positions[i], 1.0));
+            any = blend(matrix, set[i], world_from_mesh) || any;
+        if (!any) matrix = world_from_mesh[0];
+        vertices.positions[i] = glm::vec3(transform_point(matrix, vertices.positions[i]));
         if (!vertices.normals.empty())
             vertices.normals[i] = unit(normal_matrix(glm::dmat3(matrix)) * glm::dvec3(vertices.normals[i]));
     }

@@ -14,11 +14,15 @@ struct DeformedVertices {
     std::vector<glm::vec3> normals;  ///< of length 1 or 0; empty when the primitive has none
 };
 
-/// Adds the morph targets' displacements, each times its weight. Weights that are not finite count as 0.
+// The order of all operations here is part of the contract, because shaders/voxelize/deform.comp.glsl follows
+// it to the same bits: float for morph targets, double for skins, rounded to float once at the end of each.
+
+/// Adds the morph targets' displacements, each times its weight, target by target. Weights that are not
+/// finite count as 0.
 [[nodiscard]] DeformedVertices morph(const Primitive& primitive, std::span<const float> weights);
 
 /// Moves vertices by the weighted sum of their joints' matrices (glTF 2.0, 3.7.3.3); results are in world
-/// space. A vertex without weights follows its first joint.
+/// space. A vertex whose weights are all 0 follows the skin's first joint.
 /// @param world_from_mesh  one a joint: world_from_joint * joint_from_mesh.
 void skin(const Primitive& primitive, std::span<const glm::dmat4> world_from_mesh,
           DeformedVertices& vertices);

@@ -49,50 +49,43 @@ glm::dquat normalized(const glm::dquat& q) {
 void slerp(std::vector<double>& before, const std::vector<double>& after, double fraction) {
     const glm::dquat q =
         glm::slerp(normalized(quaternion(before.data())), normalized(quaternion(after.data())), fraction);
-    before = {q.x, q.y, q.z, q.w};
+    before[0] = q.x;
+    before[1] = q.y;
+    before[2] = q.z;
+    before[3] = q.w;
 }
 
-void apply(const Channel& channel, double seconds, Trs& trs, std::vector<float>& weights) {
-    const auto value = evaluate(channel, seconds);
-    switch (channel.path) {
-        case Path::translation:
-            trs.translation = {value[0], value[1], value[2]};
-            break;
-        case Path::rotation:
-            trs.rotation = normalized(quaternion(value.data()));
-            break;
-        case Path::scale:
-            trs.scale = {value[0], value[1], value[2]};
-            break;
-        case Path::weights:
-            weights.assign(value.begin(), value.end());
-            break;
-    }
-}
-
-}  // namespace
-
-std::vector<double> evaluate(const Channel& channel, double seconds) {
+/// @param next  room for the values of the later key
+void evaluate_into(const Channel& channel, double seconds, std::vector<double>& value,
+                   std::vector<double>& next) {
     const auto width = static_cast<std::size_t>(channel.width);
     const bool is_cubic = channel.interpolation == Interpolation::cubic_spline;
     const std::size_t key_numbers = is_cubic ? 3 * width : width;
     const Span span = find_span(channel.times, seconds);
     const float* before = &channel.values[span.before * key_numbers];
     const float* after = &channel.values[span.after * key_numbers];
-    std::vector<double> value(width);
     const bool on_key = span.before == span.after || channel.interpolation == Interpolation::step;
     const std::size_t value_at = is_cubic ? width : 0;
+    value.resize(width);
     for (std::size_t i = 0; i < width; ++i)
         value[i] = is_cubic && !on_key ? cubic(before, after, width, i, span)
                                        : static_cast<double>(before[value_at + i]);
-    if (on_key || is_cubic) return value;
-    std::vector<double> next(after, after + width);
+    if (on_key || is_cubic) return;
+    next.assign(after, after + width);
     if (channel.path == Path::rotation) {
         slerp(value, next, span.fraction);
-        return value;
+        return;
     }
     for (std::size_t i = 0; i < width; ++i)
         value[i] += (next[i] - value[i]) * span.fraction;
+}
+
+}  // namespace
+
+std::vector<double> evaluate(const Channel& channel, double seconds) {
+    std::vector<double> value;
+    std::vector<double> next;
+    evaluate_into(channel, seconds, value, next);
     return value;
 }
 
@@ -102,42 +95,78 @@ glm::dmat4 matrix_of(const Trs& trs) {
             glm::dvec4(rotation[2] * trs.scale.z, 0.0), glm::dvec4(trs.translation, 1.0)};
 }
 
-Pose take_pose(const Scene& scene, const Animation* animation, double seconds) {
+Poser::Poser(const Scene& scene, const Animation* animation)
+    : scene_(scene), animation_(animation), parents_(scene.nodes.size(), -1) {
     const std::size_t count = scene.nodes.size();
-    Pose pose;
-    pose.morph_weights.resize(count);
-    std::vector<Trs> moved;
-    moved.reserve(count);
-    for (const Node& node : scene.nodes)
-        moved.push_back(node.trs);
-    if (animation != nullptr)
-        for (const Channel& channel : animation->channels) {
-            const auto node = static_cast<std::size_t>(channel.node);
-            apply(channel, seconds, moved[node], pose.morph_weights[node]);
-        }
-
-    std::vector<bool> is_child(count, false);
-    for (const Node& node : scene.nodes)
-        for (const int child : node.children)
-            is_child[static_cast<std::size_t>(child)] = true;
-    // Parents before children, without recursion: hierarchies may be a million nodes deep.
-    pose.world_from_node.assign(count, glm::dmat4(1.0));
-    std::vector<std::size_t> open;
-    for (std::size_t i = 0; i < count; ++i)
-        if (!is_child[i]) open.push_back(i);
-    while (!open.empty()) {
-        const std::size_t i = open.back();
-        open.pop_back();
-        const Node& node = scene.nodes[i];
-        // Up to here it holds the parent's matrix.
-        glm::dmat4& world = pose.world_from_node[i];
-        world = world * (node.matrix != nullptr ? *node.matrix : matrix_of(moved[i]));
-        for (const int child : node.children) {
-            pose.world_from_node[static_cast<std::size_t>(child)] = world;
-            open.push_back(static_cast<std::size_t>(child));
-        }
+    pose_.world_from_node.resize(count);
+    pose_.morph_weights.resize(count);
+    moved_.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        moved_.push_back(scene.nodes[i].trs);
+        for (const int child : scene.nodes[i].children)
+            parents_[static_cast<std::size_t>(child)] = static_cast<int>(i);
     }
-    return pose;
+    // Breadth first, without recursion: hierarchies may be a million nodes deep.
+    order_.reserve(count);
+    for (std::size_t i = 0; i < count; ++i)
+        if (parents_[i] < 0) order_.push_back(i);
+    for (std::size_t done = 0; done < order_.size(); ++done)
+        for (const int child : scene.nodes[order_[done]].children)
+            order_.push_back(static_cast<std::size_t>(child));
+}
+
+void Poser::apply(const Channel& channel, double seconds) {
+    const auto node = static_cast<std::size_t>(channel.node);
+    Trs& trs = moved_[node];
+    evaluate_into(channel, seconds, value_, next_);
+    switch (channel.path) {
+        case Path::translation:
+            trs.translation = {value_[0], value_[1], value_[2]};
+            break;
+        case Path::rotation:
+            trs.rotation = normalized(quaternion(value_.data()));
+            break;
+        case Path::scale:
+            trs.scale = {value_[0], value_[1], value_[2]};
+            break;
+        case Path::weights:
+            pose_.morph_weights[node].assign(value_.begin(), value_.end());
+            break;
+    }
+}
+
+const Pose& Poser::at(double seconds) {
+    // Every channel writes what it moves at every moment, so nothing of the last one stays.
+    if (animation_ != nullptr)
+        for (const Channel& channel : animation_->channels)
+            apply(channel, seconds);
+    for (const std::size_t i : order_) {
+        const Node& node = scene_.nodes[i];
+        const glm::dmat4 parent =
+            parents_[i] < 0 ? glm::dmat4(1.0) : pose_.world_from_node[static_cast<std::size_t>(parents_[i])];
+        pose_.world_from_node[i] = parent * (node.matrix != nullptr ? *node.matrix : matrix_of(moved_[i]));
+    }
+    return pose_;
+}
+
+glm::dmat4 world_from_instance(const Node& node, const glm::dmat4& world_from_node, int instance) {
+    if (instance < 0) return world_from_node;
+    return world_from_node * matrix_of(node.instances[static_cast<std::size_t>(instance)]);
+}
+
+glm::dmat4 world_by_joint(const Skin& skin, const Pose& pose, std::size_t joint) {
+    return pose.world_from_node[static_cast<std::size_t>(skin.joints[joint])] * skin.joint_from_mesh[joint];
+}
+
+std::span<const float> morph_weights_of(const Scene& scene, const Pose& pose, std::size_t node) {
+    if (!pose.morph_weights[node].empty()) return pose.morph_weights[node];
+    const Node& its = scene.nodes[node];
+    if (!its.morph_weights.empty()) return its.morph_weights;
+    return scene.meshes[static_cast<std::size_t>(its.mesh)].morph_weights;
+}
+
+Pose take_pose(const Scene& scene, const Animation* animation, double seconds) {
+    return Poser(scene, animation).at(seconds);
 }
 
 }  // namespace cairn::scenes

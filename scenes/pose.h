@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -17,8 +19,40 @@ struct Pose {
 
 [[nodiscard]] glm::dmat4 matrix_of(const Trs& trs);
 
-/// Evaluates an animation (null: none) and multiplies down the node hierarchy, in double.
-/// Interpolation: glTF 2.0, appendix C.
+/// Evaluates one animation at many moments; after the first it takes no memory.
+class Poser {
+public:
+    /// @param animation  null: none, the rest pose. Both must outlive the poser.
+    Poser(const Scene& scene, const Animation* animation);
+
+    /// Evaluates the animation and multiplies down the node hierarchy, in double; valid until the next call.
+    /// Interpolation: glTF 2.0, appendix C.
+    const Pose& at(double seconds);
+
+private:
+    void apply(const Channel& channel, double seconds);
+
+    const Scene& scene_;
+    const Animation* animation_;
+    std::vector<std::size_t> order_;  ///< of the nodes: parents before children
+    std::vector<int> parents_;        ///< one a node; -1 = none
+    std::vector<Trs> moved_;
+    std::vector<double> value_;
+    std::vector<double> next_;
+    Pose pose_;
+};
+
+/// Where the meshes of a node stand, beside or instead of its instance `instance` (-1: of none).
+[[nodiscard]] glm::dmat4 world_from_instance(const Node& node, const glm::dmat4& world_from_node,
+                                             int instance);
+
+/// World from the mesh space of a skin, for one of its joints.
+[[nodiscard]] glm::dmat4 world_by_joint(const Skin& skin, const Pose& pose, std::size_t joint);
+
+/// The weights in force for the node's mesh: animated, else the node's, else the mesh's.
+[[nodiscard]] std::span<const float> morph_weights_of(const Scene& scene, const Pose& pose, std::size_t node);
+
+/// The pose of one moment.
 [[nodiscard]] Pose take_pose(const Scene& scene, const Animation* animation, double seconds);
 
 /// The value of a channel, `width` numbers; rotations have length 1. Times outside the keys are clamped to

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "scenes/deform.h"
 #include "scenes/pose.h"
+#include "scenes/transform.h"
 
 namespace cairn::scenes {
 namespace {
@@ -103,14 +104,17 @@ private:
     void place_mesh(std::size_t index) {
         const Node& node = scene_.nodes[index];
         const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(node.mesh)];
-        const auto& animated = pose_.morph_weights[index];
-        const auto& weights = !animated.empty()             ? animated
-                              : !node.morph_weights.empty() ? node.morph_weights
-                                                            : mesh.morph_weights;
+        const std::span<const float> weights = morph_weights_of(scene_, pose_, index);
         const std::vector<glm::dmat4> joints = joint_matrices(node);
         for (const Primitive& primitive : mesh.primitives) {
-            Item item{&primitive, primitive.positions, primitive.normals, pose_.world_from_node[index]};
             const bool skinned = !joints.empty() && !primitive.skin.empty();
+            Item item{&primitive,
+                      primitive.positions,
+                      primitive.normals,
+                      pose_.world_from_node[index],
+                      int(index),
+                      -1,
+                      skinned};
             if (skinned || !primitive.morph_targets.empty())
                 deform(item, weights, skinned ? &joints : nullptr);
             // A skin has put its vertices into the world: glTF lets it pass over the node, and so over
@@ -119,9 +123,10 @@ private:
                 add(item, index);
                 continue;
             }
-            for (const Trs& instance : node.instances) {
+            for (int instance = 0; instance < int(node.instances.size()); ++instance) {
                 Item copy = item;
-                copy.world_from_mesh = item.world_from_mesh * matrix_of(instance);
+                copy.instance = instance;
+                copy.world_from_mesh = world_from_instance(node, item.world_from_mesh, instance);
                 add(copy, index);
             }
         }
@@ -133,8 +138,7 @@ private:
         std::vector<glm::dmat4> matrices;
         matrices.reserve(skin.joints.size());
         for (std::size_t j = 0; j < skin.joints.size(); ++j)
-            matrices.push_back(pose_.world_from_node[static_cast<std::size_t>(skin.joints[j])] *
-                               skin.joint_from_mesh[j]);
+            matrices.push_back(world_by_joint(skin, pose_, j));
         return matrices;
     }
 
@@ -180,7 +184,7 @@ private:
         double finite_sum = 0.0;  // a single infinity or NaN stays in a sum for ever
         for (std::size_t i = 0; i < vertex_count; ++i) {
             const glm::vec3& position = item.positions[used.empty() ? i : used[i]];
-            const glm::dvec3 world(item.world_from_mesh * glm::dvec4(position, 1.0));
+            const glm::dvec3 world = transform_point(item.world_from_mesh, position);
             result_.bounds.add(world);
             finite_sum += 0.0 * (world.x + world.y + world.z);
         }
@@ -205,15 +209,45 @@ std::size_t checked(const char* what, int index, std::size_t count, const std::s
 
 }  // namespace
 
+const Animation* animation_of(const Scene& scene, const When& when) {
+    if (!when.animation) return nullptr;
+    return &scene.animations[checked("animation", *when.animation, scene.animations.size(), scene.name)];
+}
+
 Snapshot take_snapshot(const Scene& scene, const When& when) {
-    const Animation* animation = nullptr;
-    if (when.animation)
-        animation =
-            &scene.animations[checked("animation", *when.animation, scene.animations.size(), scene.name)];
+    const Animation* const animation = animation_of(scene, when);
     const std::size_t root =
         checked("scene", when.scene_index.value_or(scene.default_scene), scene.scenes.size(), scene.name);
     const Pose pose = take_pose(scene, animation, when.seconds);
     return SnapshotTaker(scene, pose).take(scene.scenes[root]);
+}
+
+std::vector<double> frame_times(const Scene& scene, const When& when, double frames_per_second) {
+    constexpr double most_frames = 1e6;
+    const Animation* const animation = animation_of(scene, when);
+    const double duration = animation != nullptr ? animation->duration : 0.0;
+    if (!(frames_per_second > 0.0) || !(duration * frames_per_second <= most_frames)) {
+        throw Error(
+            Fault::usage, scene.name,
+            fmt::format("{} frames a second over {} seconds are out of range", frames_per_second, duration),
+            fmt::format("choose a rate above 0 that makes at most {} frames", most_frames));
+    }
+    std::vector<double> times;
+    for (std::size_t frame = 0; double(frame) / frames_per_second < duration; ++frame)
+        times.push_back(double(frame) / frames_per_second);
+    times.push_back(duration);
+    return times;
+}
+
+Bounds bounds_over_animation(const Scene& scene, const When& when, double frames_per_second) {
+    Bounds bounds;
+    for (const double seconds : frame_times(scene, when, frames_per_second)) {
+        const Bounds frame = take_snapshot(scene, {seconds, when.animation, when.scene_index}).bounds;
+        if (frame.empty()) continue;
+        bounds.add(frame.low);
+        bounds.add(frame.high);
+    }
+    return bounds;
 }
 
 }  // namespace cairn::scenes

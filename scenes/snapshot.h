@@ -30,6 +30,9 @@ struct Item {
     std::span<const glm::vec3> positions;  ///< mesh space; one a vertex
     std::span<const glm::vec3> normals;    ///< mesh space; empty when the file has none
     glm::dmat4 world_from_mesh{1.0};
+    int node = -1;         ///< into Scene::nodes
+    int instance = -1;     ///< into the node's instances; -1: in place
+    bool skinned = false;  ///< the node's skin moved `positions`, into the world
 };
 
 struct PlacedLight {
@@ -67,5 +70,19 @@ struct Snapshot {
 /// transform
 ///                gives a vertex that is not finite.
 [[nodiscard]] Snapshot take_snapshot(const Scene& scene, const When& when = {});
+
+/// The animation that a moment names; null: none. @throws Error  Fault::usage when it does not exist.
+[[nodiscard]] const Animation* animation_of(const Scene& scene, const When& when);
+
+/// The moments of an animation's frames: 0, 1 / rate, ... and its end, in seconds. Just 0 without an
+/// animation.
+/// @throws Error  Fault::usage when the animation does not exist, the rate is not positive, or there would be
+///                more than a million frames.
+[[nodiscard]] std::vector<double> frame_times(const Scene& scene, const When& when, double frames_per_second);
+
+/// Encloses the scene at every frame (of frame_times), so that one grid serves them all. Between two frames
+/// a vertex may swing past it by a little; grid_around leaves a voxel for that.
+/// @throws Error  as take_snapshot and frame_times do.
+[[nodiscard]] Bounds bounds_over_animation(const Scene& scene, const When& when, double frames_per_second);
 
 }  // namespace cairn::scenes

@@ -75,7 +75,8 @@ std::vector<MaskCandidate> ConservativeVoxelizer::mark_chunk(const Region& regio
         mark_small_.use();
         gl::dispatch_threads(batch, VOXEL_GROUP);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-        const auto counts = queue_.read_all<std::uint32_t>(VOXEL_QUEUE_COUNT);
+        std::array<std::uint32_t, VOXEL_QUEUE_COUNT> counts{};
+        queue_.read(0, counts.data(), sizeof(counts));
         if (counts[VOXEL_QUEUE_DOUBT] > 0) mark_doubtful(region, counts[VOXEL_QUEUE_DOUBT]);
         for (const unsigned queue : {VOXEL_QUEUE_LARGE, VOXEL_QUEUE_HUGE}) {
             if (counts[queue] > 0) mark_queued(region, queue, counts[queue]);

@@ -1,26 +1,9 @@
-#include <fmt/format.h>
-
-#include "base/error.h"
 #include "gl/limits.h"
 #include "shaders/interop/bindings.h"
 #include "voxelizer/surface.h"
+#include "voxelizer/upload_array.h"
 
 namespace cairn::voxelizer {
-namespace {
-
-template <typename T>
-gl::Buffer upload_array(const std::vector<T>& values, const std::string& name, std::size_t limit_bytes) {
-    const std::size_t bytes = values.size() * sizeof(T);
-    if (bytes > limit_bytes) {
-        throw Error(Fault::memory, name,
-                    fmt::format("{:.1f} MiB are more than a shader of this driver can see ({:.1f} MiB)",
-                                double(bytes) / 0x1p20, double(limit_bytes) / 0x1p20),
-                    "use smaller images, or another driver");
-    }
-    return gl::Buffer::of(std::span<const T>(values), name);
-}
-
-}  // namespace
 
 GpuSurface upload(const Surface& surface) {
     const std::size_t limit = gl::query_limits().shader_storage_bytes;

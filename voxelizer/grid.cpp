@@ -36,11 +36,15 @@ double Grid::lattice_unit() const {
     return std::ldexp(voxel_size, level() - LATTICE_BITS);
 }
 
+double Grid::lattice_scale() const {
+    return 1.0 / lattice_unit();
+}
+
 glm::i64vec3 Grid::lattice_from_world(const glm::dvec3& world) const {
-    const glm::dvec3 units = (world - origin) / lattice_unit();
+    const glm::dvec3 units = (world - origin) * lattice_scale();
     glm::i64vec3 nearest;
     for (int axis = 0; axis < 3; ++axis) {
-        if (!(std::abs(units[axis]) <= 0x1p40)) {
+        if (!(std::abs(units[axis]) <= LATTICE_WORLD_LIMIT)) {
             throw Error(Fault::input, "surface",
                         fmt::format("the point ({}, {}, {}) is too far from the grid, or not finite", world.x,
                                     world.y, world.z),

@@ -25,7 +25,11 @@ struct Grid {
     [[nodiscard]] int level() const;
     /// Side of a lattice unit in the world.
     [[nodiscard]] double lattice_unit() const;
-    /// Nearest lattice point; not limited to the root cube. @throws Error (Fault::input) past +-2^40 units.
+    /// Lattice units a world unit: what lattice_from_world multiplies by. A product, because a quotient of
+    /// doubles is not rounded alike by all drivers, and shaders/voxelize/deform.comp.glsl must agree.
+    [[nodiscard]] double lattice_scale() const;
+    /// Nearest lattice point, floor((world - origin) * lattice_scale() + 1/2); not limited to the root cube.
+    /// @throws Error (Fault::input) past +-LATTICE_WORLD_LIMIT units.
     [[nodiscard]] glm::i64vec3 lattice_from_world(const glm::dvec3& world) const;
     [[nodiscard]] glm::dvec3 world_from_lattice(const glm::dvec3& lattice) const;
 };

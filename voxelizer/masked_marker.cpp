@@ -31,10 +31,10 @@ std::vector<MaskCandidate> MaskedMarker::mark(const Region& region, unsigned que
     set_region(decide_, region);
     candidates_.bind_storage(SSBO_VOXEL_CANDIDATES);
     std::vector<MaskCandidate> undecided;
-    std::vector<Work> waiting = {{0, count, 0, unsigned(region.size.y) * unsigned(region.size.z)}};
-    while (!waiting.empty()) {
-        const Work work = waiting.back();
-        waiting.pop_back();
+    waiting_.assign(1, {0, count, 0, unsigned(region.size.y) * unsigned(region.size.z)});
+    while (!waiting_.empty()) {
+        const Work work = waiting_.back();
+        waiting_.pop_back();
         const unsigned listed = list(region, queue, work);
         if (listed <= VOXEL_CANDIDATES) {
             decide(listed, undecided);
@@ -44,11 +44,11 @@ std::vector<MaskCandidate> MaskedMarker::mark(const Region& region, unsigned que
         const unsigned half = work.count / 2;
         const unsigned middle = (work.first_row + work.last_row) / 2;
         if (half > 0) {
-            waiting.push_back({work.first, half, work.first_row, work.last_row});
-            waiting.push_back({work.first + half, work.count - half, work.first_row, work.last_row});
+            waiting_.push_back({work.first, half, work.first_row, work.last_row});
+            waiting_.push_back({work.first + half, work.count - half, work.first_row, work.last_row});
         } else {
-            waiting.push_back({work.first, 1, work.first_row, middle});
-            waiting.push_back({work.first, 1, middle, work.last_row});
+            waiting_.push_back({work.first, 1, work.first_row, middle});
+            waiting_.push_back({work.first, 1, middle, work.last_row});
         }
     }
     return undecided;
@@ -76,14 +76,20 @@ unsigned MaskedMarker::list(const Region& region, unsigned queue, const Work& wo
         gl::dispatch_threads(std::size_t(count) * slices, VOXEL_GROUP);
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    return candidates_.read_all<std::uint32_t>(1)[0];
+    return header().listed;
+}
+
+MaskedMarker::Header MaskedMarker::header() const {
+    Header header{};
+    candidates_.read(0, &header, sizeof(header));
+    return header;
 }
 
 void MaskedMarker::decide(unsigned count, std::vector<MaskCandidate>& undecided) {
     decide_.use();
     gl::dispatch_threads(count, VOXEL_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    if (candidates_.read_all<std::uint32_t>(header_words)[1] == 0) return;
+    if (header().undecided == 0) return;
     for (const MaskCandidate& candidate : candidates_.read_all<MaskCandidate>(count, header_bytes)) {
         if (candidate.triangle < 0) undecided.push_back({candidate.voxel, -1 - candidate.triangle});
     }

@@ -33,12 +33,18 @@ private:
         unsigned first, count;
         unsigned first_row, last_row;
     };
+    /// How the buffer of candidates begins (shaders/voxelize/candidates.glsl).
+    struct Header {
+        std::uint32_t listed, undecided;
+    };
+    [[nodiscard]] Header header() const;
     [[nodiscard]] unsigned list(const Region& region, unsigned queue, const Work& work);
     void decide(unsigned count, std::vector<MaskCandidate>& undecided);
 
     gl::Program list_;
     gl::Program decide_;
     gl::Buffer candidates_;
+    std::vector<Work> waiting_;
 };
 
 /// Which candidates are surface, on the CPU. Reads the triangles back from the driver.

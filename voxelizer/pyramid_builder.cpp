@@ -14,12 +14,14 @@ bool is_wide(const glm::ivec3& size) {
     return (size.x + 31) / 32 % 4 == 0;
 }
 
-gl::TextureHandle view(const gl::Buffer& bits, const glm::ivec3& size) {
+gl::TextureHandle buffer_texture() {
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
-    gl::TextureHandle texture(id);
-    glTextureBuffer(id, is_wide(size) ? GL_RGBA32UI : GL_R32UI, bits.id());
-    return texture;
+    return gl::TextureHandle(id);
+}
+
+void show(const gl::TextureHandle& texture, const gl::Buffer& bits, const glm::ivec3& size) {
+    glTextureBuffer(texture.id(), is_wide(size) ? GL_RGBA32UI : GL_R32UI, bits.id());
 }
 
 }  // namespace
@@ -37,7 +39,8 @@ BitGrid read_bits(const gl::Buffer& bits, const glm::ivec3& size) {
 
 PyramidBuilder::PyramidBuilder(const gl::ShaderSource& shaders)
     : halve_wide_(gl::build_compute(shaders, "voxelize/halve.comp.glsl", {{"WIDE", "1"}})),
-      halve_(gl::build_compute(shaders, "voxelize/halve.comp.glsl", {{"WIDE", "0"}})) {}
+      halve_(gl::build_compute(shaders, "voxelize/halve.comp.glsl", {{"WIDE", "0"}})),
+      finest_(buffer_texture()) {}
 
 void PyramidBuilder::prepare(const glm::ivec3& size) {
     const glm::ivec3 first = (size + 1) / 2;
@@ -47,7 +50,8 @@ void PyramidBuilder::prepare(const glm::ivec3& size) {
         Level level;
         level.size = (fine + 1) / 2;
         level.bits = gl::Buffer(std::max<std::size_t>(bit_bytes(level.size), 16), "voxel pyramid");
-        level.texture = view(level.bits, level.size);
+        level.texture = buffer_texture();
+        show(level.texture, level.bits, level.size);
         fine = level.size;
         levels_.push_back(std::move(level));
     }
@@ -68,7 +72,7 @@ void PyramidBuilder::halve(const gl::TextureHandle& fine, const glm::ivec3& fine
 
 BitmaskPyramid PyramidBuilder::build(const gl::Buffer& bits, const glm::ivec3& size) {
     prepare(size);
-    finest_ = view(bits, size);
+    show(finest_, bits, size);
     glFinish();
     const auto start = std::chrono::steady_clock::now();
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);

@@ -10,6 +10,7 @@
 #include <tbb/task_group.h>
 
 #include "base/error.h"
+#include "scenes/transform.h"
 #include "shaders/interop/config.h"
 #include "voxelizer/surface_materials.h"
 
@@ -58,24 +59,25 @@ bool on_lattice_range(const glm::i64vec3& p) {
 /// Puts one item on the lattice: only triangles that reach the root cube, only vertices that these use.
 class Flattener {
 public:
-    Flattener(const scenes::Scene& scene, const scenes::Item& item, const Grid& grid,
-              const SurfaceMaterials& materials, bool attributes)
-        : item_(item),
-          primitive_(*item.primitive),
-          grid_(grid),
+    /// @param options  attributes: also where only masks ask for them
+    Flattener(const scenes::Scene& scene, const scenes::Snapshot& snapshot, std::size_t item,
+              const Grid& grid, const SurfaceMaterials& materials, const SurfaceOptions& options)
+        : item_(snapshot.items[item]),
+          item_number_(std::uint32_t(item)),
+          primitive_(*item_.primitive),
           materials_(materials),
-          attributes_(attributes),
-          numbers_(item.positions.size(), -1) {
+          options_(options),
+          numbers_(item_.positions.size(), -1) {
         if (primitive_.material >= 0) {
             uv_from_mesh_ = scene.materials[std::size_t(primitive_.material)].uv_from_mesh;
         }
-        const glm::dmat3 linear(item.world_from_mesh);
-        has_normals_ = !item.normals.empty() && glm::determinant(linear) != 0.0;
-        if (has_normals_) normal_from_mesh_ = glm::transpose(glm::inverse(linear));
-        lattice_.reserve(item.positions.size());
-        for (const glm::vec3& position : item.positions) {
+        if (options.unplaced) return;
+        has_normals_ = !item_.normals.empty();
+        normal_from_mesh_ = normal_from_mesh(item_.world_from_mesh);
+        lattice_.reserve(item_.positions.size());
+        for (const glm::vec3& position : item_.positions) {
             lattice_.push_back(
-                grid.lattice_from_world(glm::dvec3(item.world_from_mesh * glm::dvec4(position, 1.0))));
+                grid.lattice_from_world(scenes::transform_point(item_.world_from_mesh, position)));
         }
     }
 
@@ -99,9 +101,9 @@ public:
 
 private:
     void add(const std::array<std::uint32_t, 3>& vertices) {
-        const glm::i64vec3& a = lattice_[vertices[0]];
-        const glm::i64vec3& b = lattice_[vertices[1]];
-        const glm::i64vec3& c = lattice_[vertices[2]];
+        const glm::i64vec3 a = lattice(vertices[0]);
+        const glm::i64vec3 b = lattice(vertices[1]);
+        const glm::i64vec3 c = lattice(vertices[2]);
         if (glm::any(glm::lessThan(glm::max(glm::max(a, b), c), glm::i64vec3(0))) ||
             glm::any(glm::greaterThan(glm::min(glm::min(a, b), c), glm::i64vec3(lattice_side)))) {
             return;
@@ -127,6 +129,10 @@ private:
         }
     }
 
+    [[nodiscard]] glm::i64vec3 lattice(std::uint32_t vertex) const {
+        return options_.unplaced ? glm::i64vec3(0) : lattice_[vertex];
+    }
+
     [[nodiscard]] glm::vec2 texcoord(std::uint32_t vertex) const {
         if (primitive_.texcoords.empty()) return glm::vec2(0.0F);
         const glm::vec3 uv = uv_from_mesh_ * glm::vec3(primitive_.texcoords[vertex], 1.0F);
@@ -143,9 +149,10 @@ private:
         std::int32_t& number = numbers_[vertex];
         if (number < 0) {
             number = std::int32_t(part_.mesh.positions.size());
-            const glm::ivec3 position(lattice_[vertex]);
+            const glm::ivec3 position(lattice(vertex));
             part_.mesh.positions.push_back({position.x, position.y, position.z});
-            if (attributes_) {
+            if (options_.unplaced) part_.mesh.sources.push_back({item_number_, vertex});
+            if (options_.attributes) {
                 const std::uint32_t normal =
                     has_normals_ ? packed_normal(normal_from_mesh_ * glm::dvec3(item_.normals[vertex])) : 0;
                 part_.mesh.attributes.push_back({normal, color(vertex), texcoord(vertex)});
@@ -155,10 +162,10 @@ private:
     }
 
     const scenes::Item& item_;
+    std::uint32_t item_number_;
     const scenes::Primitive& primitive_;
-    const Grid& grid_;
     const SurfaceMaterials& materials_;
-    bool attributes_;
+    const SurfaceOptions& options_;
     bool has_normals_ = false;
     glm::mat3 uv_from_mesh_{1.0F};
     glm::dmat3 normal_from_mesh_{1.0};
@@ -188,6 +195,7 @@ void append(Surface& surface, const SurfaceChunk& part) {
                     number = std::int32_t(chunk.positions.size());
                     chunk.positions.push_back(part.positions[vertex]);
                     if (!part.attributes.empty()) chunk.attributes.push_back(part.attributes[vertex]);
+                    if (!part.sources.empty()) chunk.sources.push_back(part.sources[vertex]);
                 }
                 vertex = std::uint32_t(number);
             }
@@ -197,7 +205,7 @@ void append(Surface& surface, const SurfaceChunk& part) {
 }
 
 void flatten(Surface& surface, const scenes::Scene& scene, const scenes::Snapshot& snapshot,
-             const SurfaceMaterials& materials, bool attributes) {
+             const SurfaceMaterials& materials, const SurfaceOptions& options) {
     // Items side by side, a bounded number of triangles at a time: the parts exist beside the surface.
     constexpr std::size_t group_triangles = std::size_t(1) << 19;
     const std::vector<scenes::Item>& items = snapshot.items;
@@ -215,7 +223,7 @@ void flatten(Surface& surface, const scenes::Scene& scene, const scenes::Snapsho
         tbb::parallel_for(
             std::size_t(0), parts.size(),
             [&](std::size_t i) {
-                parts[i] = Flattener(scene, items[first + i], surface.grid, materials, attributes).run();
+                parts[i] = Flattener(scene, snapshot, first + i, surface.grid, materials, options).run();
             },
             context);
         for (const Part& part : parts) {
@@ -232,6 +240,11 @@ void flatten(Surface& surface, const scenes::Scene& scene, const scenes::Snapsho
 
 }  // namespace
 
+glm::dmat3 normal_from_mesh(const glm::dmat4& world_from_mesh) {
+    const glm::dmat3 linear(world_from_mesh);
+    return glm::determinant(linear) != 0.0 ? glm::transpose(glm::inverse(linear)) : glm::dmat3(0.0);
+}
+
 Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const Grid& grid,
                       const SurfaceOptions& options) {
     try {
@@ -240,7 +253,9 @@ Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapsh
         surface.grid = grid;
         surface.has_color = materials.has_color;
         surface.uniform_color = materials.uniform_color;
-        flatten(surface, scene, snapshot, materials, options.attributes || materials.any_masked);
+        SurfaceOptions wanted = options;
+        wanted.attributes = options.attributes || materials.any_masked;
+        flatten(surface, scene, snapshot, materials, wanted);
         surface.materials = std::move(materials.materials);
         surface.texels = std::move(materials.texels);
         return surface;

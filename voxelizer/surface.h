@@ -13,12 +13,19 @@
 
 namespace cairn::voxelizer {
 
+/// Where a vertex of a chunk comes from.
+struct SurfaceSource {
+    std::uint32_t item;    ///< into Snapshot::items
+    std::uint32_t vertex;  ///< into Item::positions
+};
+
 /// At most SURFACE_CHUNK_TRIANGLES triangles and the vertices they use.
 struct SurfaceChunk {
     std::vector<std::array<std::int32_t, 3>> positions;  ///< lattice units, within [-2^24, 2^25]
     std::vector<interop::SurfaceTriangle> triangles;
     std::vector<interop::SurfaceAttributes>
-        attributes;  ///< one a vertex, or empty (SurfaceOptions::attributes)
+        attributes;                      ///< one a vertex, or empty (SurfaceOptions::attributes)
+    std::vector<SurfaceSource> sources;  ///< one a vertex, or empty (SurfaceOptions::unplaced)
 };
 
 /// A triangle that reaches further than 2^24 units past the root cube, whose products pass 53 bits.
@@ -50,11 +57,18 @@ struct Surface {
 struct SurfaceOptions {
     bool attributes =
         false;  ///< normals, colours and texture coordinates too (the brick producer needs them)
+    /// All triangles, wherever they are, with `sources`, and with positions and normals left 0 for another to
+    /// fill in (MovingSurface).
+    bool unplaced = false;
 };
 
 /// @throws Error  Fault::memory when it would not fit in memory; Fault::input past the lattice's limits.
 [[nodiscard]] Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                                     const Grid& grid, const SurfaceOptions& options = {});
+
+/// Carries normals where a matrix carries points; all 0 where the matrix flattens space, and normals have no
+/// image.
+[[nodiscard]] glm::dmat3 normal_from_mesh(const glm::dmat4& world_from_mesh);
 
 /// A surface in the driver's memory.
 struct GpuSurfaceChunk {

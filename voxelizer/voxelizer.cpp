@@ -84,16 +84,17 @@ void Voxelizer::mark_timed(const GpuSurface& surface, const Region& region,
     check_region(region);
     const std::size_t bytes = bit_bytes(region.size);
     if (bits_.size_bytes() != bytes) bits_ = gl::Buffer(bytes, "voxel bits");
-    std::vector<ChunkPart> parts(surface.chunks.size());
-    for (std::size_t chunk = 0; chunk < parts.size(); ++chunk) {
-        parts[chunk].count = surface.chunks[chunk].triangle_count;
+    parts_.clear();
+    parts_.resize(surface.chunks.size());
+    for (std::size_t chunk = 0; chunk < parts_.size(); ++chunk) {
+        parts_[chunk].count = surface.chunks[chunk].triangle_count;
         if (!subset) continue;
         const std::vector<std::uint32_t> local = subset_in_chunk(*subset, chunk);
-        parts[chunk] = {local.size(), gl::Buffer::of(std::span<const std::uint32_t>(local), "voxel subset")};
+        parts_[chunk] = {local.size(), gl::Buffer::of(std::span<const std::uint32_t>(local), "voxel subset")};
     }
     glFinish();
     const auto start = std::chrono::steady_clock::now();
-    mark(surface, region, parts, bits_);
+    mark(surface, region, parts_, bits_);
     glFinish();
     last_milliseconds_ =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -101,8 +102,23 @@ void Voxelizer::mark_timed(const GpuSurface& surface, const Region& region,
 
 BitGrid Voxelizer::voxelize(const GpuSurface& surface, const Region& region,
                             std::optional<std::span<const std::uint32_t>> subset) {
+    BitGrid out;
+    voxelize_into(surface, region, out, subset);
+    return out;
+}
+
+void Voxelizer::voxelize_into(const GpuSurface& surface, const Region& region, BitGrid& out,
+                              std::optional<std::span<const std::uint32_t>> subset) {
     mark_timed(surface, region, subset);
-    return read_bits(bits_, region.size);
+    out.size = region.size;
+    out.words.resize(bit_bytes(region.size) / sizeof(std::uint32_t));
+    bits_.read(0, out.words.data(), bit_bytes(region.size));
+}
+
+const gl::Buffer& Voxelizer::voxelize_on_gpu(const GpuSurface& surface, const Region& region,
+                                             std::optional<std::span<const std::uint32_t>> subset) {
+    mark_timed(surface, region, subset);
+    return bits_;
 }
 
 BitmaskPyramid Voxelizer::voxelize_pyramid(const GpuSurface& surface, const Region& region,

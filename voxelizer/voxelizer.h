@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "gl/buffer.h"
 #include "gl/shader_source.h"
@@ -41,6 +42,15 @@ public:
     [[nodiscard]] BitGrid voxelize(const GpuSurface& surface, const Region& region,
                                    std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
+    /// The same into a grid of the caller's: where it held a region of this size before, nothing is
+    /// allocated, on the CPU or the GPU (but for what alpha masks and far triangles leave to the CPU).
+    void voxelize_into(const GpuSurface& surface, const Region& region, BitGrid& out,
+                       std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
+
+    /// The same with the bits left on the GPU, BitGrid::words of the region; valid until the next call.
+    const gl::Buffer& voxelize_on_gpu(const GpuSurface& surface, const Region& region,
+                                      std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
+
     /// The same with all coarser levels, both computed on the GPU.
     [[nodiscard]] BitmaskPyramid voxelize_pyramid(
         const GpuSurface& surface, const Region& region,
@@ -74,6 +84,7 @@ private:
     gl::ShaderSource shaders_;
     PyramidBuilder pyramid_;
     gl::Buffer bits_;
+    std::vector<ChunkPart> parts_;
     double last_milliseconds_ = 0.0;
 };
 

@@ -17,6 +17,14 @@
 #define TEXTURE_HALVE_FINE 0  // BitGrid::words of a level; those of the next coarser one (passes that read no surface)
 #define SSBO_HALVE_COARSE 0
 
+// What moves a surface (shaders/voxelize/deform.comp.glsl), beside SSBO_SURFACE_POSITIONS and _ATTRIBUTES.
+#define SSBO_DEFORM_VERTICES 1    // uvec4 a vertex. xyz: bits of its floats at rest, in mesh space; w: its DeformItem
+#define SSBO_DEFORM_VECTORS 3     // float[3] each: normals at rest, and displacements of morph targets
+#define SSBO_DEFORM_INFLUENCES 4  // DeformInfluences
+#define SSBO_DEFORM_ITEMS 5       // DeformItem
+#define SSBO_DEFORM_MATRICES 6    // double[12] each: four columns of three
+#define SSBO_DEFORM_FRAME 7       // DeformHeader, then DeformTarget
+
 // The producer's own (beside the surface's 0 to 4).
 #define SSBO_BRICK_PAIRS 5    // BrickPair: which triangle touches which tile of the batch
 #define SSBO_BRICK_TILES 6    // BrickTile: the tiles of the batch

@@ -4,6 +4,8 @@
 
 // Vertices are rounded once to this lattice; the root cube of a grid is 2^LATTICE_BITS units a side.
 #define LATTICE_BITS 24
+// World coordinates further away than this many lattice units are an error.
+#define LATTICE_WORLD_LIMIT 1099511627776.0
 
 // A surface is cut in chunks of at most this many triangles, so that each of its buffers stays under the smallest
 // shader-storage limit in use (128 MiB). A triangle's global number is chunk * SURFACE_CHUNK_TRIANGLES + local.
@@ -38,6 +40,11 @@
 #define TEXCOORD_LIMIT 1048576.0
 #define TEXEL_UNITS 256
 #define TEXEL_COORDINATE_LIMIT 33554432.0
+
+// Surfaces that move (shaders/voxelize/deform.comp.glsl).
+#define DEFORM_GROUP 64
+#define DEFORM_NONE 4294967295u
+#define DEFORM_TURNS 16384  // morph targets and influences of a vertex: loop turns. Past it, the CPU deforms.
 
 // Bits of SurfaceMaterial.flags
 #define MATERIAL_WRAP_S_SHIFT 0  // 2 bits: 0 repeat, 1 mirrored repeat, 2 clamp to edge

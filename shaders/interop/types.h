@@ -38,6 +38,40 @@ struct SurfaceMaterial {
     float padding2;
 };
 
+// A run of a chunk's vertices that move alike: one primitive at one place.
+struct DeformItem {
+    uint first_vertex;     // in the chunk
+    uint matrix;           // in SSBO_DEFORM_MATRICES: world_from_mesh, then normal_from_mesh in its first nine numbers
+    uint first_joint;      // the matrix of the skin's first joint; DEFORM_NONE: no skin
+    uint first_influence;  // of first_vertex
+    uint set_count;        // DeformInfluences a vertex
+    uint first_normal;     // of first_vertex, in SSBO_DEFORM_VECTORS; DEFORM_NONE: no normals
+    uint first_target;     // in SSBO_DEFORM_FRAME
+    uint target_count;
+};
+
+// Four influences of a skin on a vertex. A vertex has those that count first; the first weight of 0 ends them.
+struct DeformInfluences {
+    uint joints[2];        // 16 bits each
+    float weights[4];
+};
+
+struct DeformTarget {
+    uint first_position;   // displacement of the item's first_vertex, in SSBO_DEFORM_VECTORS; DEFORM_NONE: moves none
+    uint first_normal;     // the same for normals
+    float weight;          // of this frame; finite
+    uint padding;
+};
+
+struct DeformHeader {
+    double origin[3];      // of the grid
+    double scale;          // Grid::lattice_scale
+    uint stray;            // vertices that SurfaceChunk::positions cannot hold
+    uint lost;             // vertices past LATTICE_WORLD_LIMIT, or not finite
+    uint far_triangles;    // that have a stray vertex and may reach the root cube
+    uint padding;
+};
+
 // One tile in the node pool (Crassin et al. 2008, section 4.2). A tile that is empty has no entry: its bit in the
 // parent's mask is 0.
 struct NodeEntry {
@@ -94,6 +128,10 @@ static_assert(sizeof(BrickPair) == 12, "GLSL sees another layout");
 static_assert(sizeof(MarchView) == 160, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
 static_assert(sizeof(MarchCounters) == 20, "GLSL sees another layout");
+static_assert(sizeof(DeformItem) == 32, "GLSL sees another layout");
+static_assert(sizeof(DeformInfluences) == 24, "GLSL sees another layout");
+static_assert(sizeof(DeformTarget) == 16, "GLSL sees another layout");
+static_assert(sizeof(DeformHeader) == 48, "GLSL sees another layout");
 static_assert(sizeof(SurfaceTriangle) == 16, "GLSL sees another layout");
 static_assert(sizeof(SurfaceAttributes) == 16, "GLSL sees another layout");
 static_assert(sizeof(SurfaceMaterial) == 48, "GLSL sees another layout");

@@ -1,0 +1,28 @@
+// One thread is one triangle: counts those that reach the root cube from further away than SurfaceChunk::positions can hold.
+// deform.comp.glsl has left such vertices just past that.
+#include "interop/bindings.h"
+#include "interop/config.h"
+#include "interop/types.h"
+#include "voxelize/surface.glsl"
+
+layout(local_size_x = DEFORM_GROUP) in;
+
+layout(std430, binding = SSBO_DEFORM_FRAME) restrict buffer FrameBlock { DeformHeader header; };
+
+uniform uint count;
+
+void main() {
+    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * DEFORM_GROUP;
+    if (thread >= count) return;
+    const uvec4 corners = surface_triangles[thread].vertices_material;
+    const ivec3 a = surface_position(corners.x);
+    const ivec3 b = surface_position(corners.y);
+    const ivec3 c = surface_position(corners.z);
+    const ivec3 low = min(min(a, b), c);
+    const ivec3 high = max(max(a, b), c);
+    const int side = 1 << LATTICE_BITS;
+    if (any(lessThan(high, ivec3(0))) || any(greaterThan(low, ivec3(side)))) return;
+    if (any(lessThan(low, ivec3(-side))) || any(greaterThan(high, ivec3(2 * side)))) {
+        atomicAdd(header.far_triangles, 1u);
+    }
+}
