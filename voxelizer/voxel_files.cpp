@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "voxelizer/write_binvox.h"
 #include "voxelizer/write_npy.h"
 
 namespace cairn::voxelizer {
@@ -19,7 +20,7 @@ struct Format {
     std::unique_ptr<VoxelWriter> (*make)(const std::filesystem::path&, const Grid&);
 };
 
-constexpr std::array<Format, 1> formats = {{{".npy", make_npy_writer}}};
+constexpr std::array<Format, 2> formats = {{{".npy", make_npy_writer}, {".binvox", make_binvox_writer}}};
 
 }  // namespace
 
