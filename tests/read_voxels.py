@@ -218,8 +218,8 @@ def compare(found, expected, tolerance):
     worst = 0.0
     for voxel, values in found.items():
         wanted = expected[voxel]
-        if len(values) == 3:  # the palette's 8 bits, sRGB
-            wanted = [srgb(c) for c in wanted[:3]]
+        if len(values) == 3:  # the palette's 8 bits, sRGB; light grey where no colour is known
+            wanted = [srgb(c) for c in wanted[:3]] or [200, 200, 200]
         if values and len(values) != len(wanted):
             fail(f"{len(values)} values at {voxel}, not {len(wanted)}")
         worst = max([worst] + [abs(a - b) for a, b in zip(values, wanted)])

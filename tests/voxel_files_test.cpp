@@ -84,17 +84,21 @@ std::string write_file(const Voxels& voxels, const ScratchFolder& folder, const 
     return path;
 }
 
-/// Passes when another reader sees the same voxels in the same places.
-void expect_read_back(const Voxels& voxels, const std::string& ending, double tolerance) {
-    const ScratchFolder folder;
-    write_expected(voxels, folder.file("expected"));
-    const std::string path = write_file(voxels, folder, ending);
+/// Passes when another reader sees the voxels of "expected" in the folder.
+void expect_reads(const std::string& path, const ScratchFolder& folder, double tolerance) {
     const std::string command = fmt::format("{} {} {} {} {} > {} 2>&1", CAIRN_TEST_PYTHON, CAIRN_READ_VOXELS,
                                             path, folder.file("expected"), tolerance, folder.file("answer"));
     const int code = WEXITSTATUS(std::system(command.c_str()));
     const std::string answer = read_text(folder.file("answer"));
-    if (code == 77) GTEST_SKIP() << "no reader of " << ending << ": " << answer;
-    EXPECT_EQ(code, 0) << ending << ": " << answer;
+    if (code == 77) GTEST_SKIP() << "no reader of " << path << ": " << answer;
+    EXPECT_EQ(code, 0) << path << ": " << answer;
+}
+
+/// Passes when another reader sees the same voxels in the same places.
+void expect_read_back(const Voxels& voxels, const std::string& ending, double tolerance) {
+    const ScratchFolder folder;
+    write_expected(voxels, folder.file("expected"));
+    expect_reads(write_file(voxels, folder, ending), folder, tolerance);
 }
 
 /// Blobs, single voxels at the corners of the grid, and empty tiles between.
@@ -141,9 +145,7 @@ TEST_P(VoxelFiles, BitsAndPlacesAreReadBack) {
     for (const glm::ivec3 resolution :
          {glm::ivec3(40, 70, 129), glm::ivec3(1), glm::ivec3(300, 33, 257), glm::ivec3(129, 260, 31)}) {
         SCOPED_TRACE(fmt::format("{} x {} x {}", resolution.x, resolution.y, resolution.z));
-        // Without attributes a .vox is light grey, and has colours that nobody asked for.
-        Voxels voxels = random_voxels(resolution, 5, false);
-        expect_read_back(voxels, GetParam(), GetParam() == ".vox" ? 255.0 : 0.0);
+        expect_read_back(random_voxels(resolution, 5, false), GetParam(), 0.0);
     }
 }
 
@@ -172,6 +174,44 @@ TEST_P(VoxelFiles, TheSameVoxelsAreTheSameFile) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, VoxelFiles, ::testing::ValuesIn(voxel_file_endings()), name_of_ending);
+
+// The tree's upper nodes are 4096 voxels a side.
+TEST(VdbWriter, ManyUpperNodesAreReadBack) {
+    const Grid grid{{0.0, 0.0, -5.0}, 1.0 / 1024, {9000, 300, 8300}};
+    const ScratchFolder folder;
+    auto expected = fmt::output_file(folder.file("expected"));
+    expected.print("9000 300 8300\n0 0 -5 {}\n", grid.voxel_size);
+    const std::unique_ptr<VoxelWriter> writer = make_voxel_writer(folder.file("a.vdb"), grid);
+    for (const int x : {0, 3968, 4096, 8192}) {
+        for (const int z : {0, 4096, 8192}) {
+            for (const int y : {128, 256}) {
+                VoxelTile tile{{x, y, z}, BitGrid(glm::min(grid.resolution - glm::ivec3(x, y, z), 128)), {}};
+                for (const glm::ivec3 v : {glm::ivec3(0), tile.bits.size - 1, glm::ivec3(x % 31, 9, 17)}) {
+                    tile.bits.set(v);
+                    expected.print("{} {} {}\n", x + v.x, y + v.y, z + v.z);
+                }
+                writer->add(tile);
+            }
+        }
+    }
+    writer->finish();
+    expected.close();
+    expect_reads(folder.file("a.vdb"), folder, 0.0);
+}
+
+// OpenVDB's own tool lists the grids, by what their heads say.
+TEST(VdbWriter, ItsGridsAreListedByVdbPrint) {
+    if (std::system("vdb_print -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "vdb_print is not installed";
+    const Voxels voxels = random_voxels({40, 70, 129}, 13, true);
+    const ScratchFolder folder;
+    const std::string command =
+        fmt::format("vdb_print -l {} > {} 2>&1", write_file(voxels, folder, ".vdb"), folder.file("answer"));
+    const int code = WEXITSTATUS(std::system(command.c_str()));
+    const std::string answer = read_text(folder.file("answer"));
+    EXPECT_EQ(code, 0) << answer;
+    for (const std::string word : {"Name: density", "Name: Cd", "Name: N", "fog volume", "40 x 70 x 129"})
+        EXPECT_NE(answer.find(word), std::string::npos) << "no " << word << " in " << answer;
+}
 
 TEST(VoxelColours, AreReadBackFromVdb) {
     expect_read_back(random_voxels({140, 50, 60}, 9, true), ".vdb", 1.0 / 2048);
