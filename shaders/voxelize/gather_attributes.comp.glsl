@@ -18,7 +18,7 @@ uniform ivec3 region_origin;
 uniform int voxel_shift;
 uniform uint count;
 
-// Lattice units: what counts as on a side. Weights are off by 2^-52, and distances to a side are under 2^26.
+// Lattice units: what counts as on a side, so that what only touches the voxel has a piece. Weights are off by 2^-52, and distances to a side are under 2^26.
 const double ON_SIDE = 1.52587890625e-5LF;  // 2^-16
 
 #define MAX_CORNERS 9  // three, and one more for each side that cuts
@@ -65,15 +65,12 @@ Piece piece_in_voxel(ivec3 a, ivec3 b, ivec3 c, ivec3 voxel) {
         const ivec3 d = (side & 1) == 0 ? p - low[axis] : high[axis] - p;
         if (any(lessThan(d, ivec3(0))) && piece.count > 0) piece = clip(piece, dvec3(d));
     }
-    if (piece.count == 0) {  // by rounding: they do touch
-        corners[piece.first] = dvec2(1.0LF / 3.0LF);
-        piece.count = 1;
-    }
     return piece;
 }
 
-SurfacePoint point_at(uvec3 vertices, dvec2 weights) {
-    return SurfacePoint(vertices, vec3(dvec3(1.0LF - weights.x - weights.y, weights)));
+// Floats suffice for where a sample lies: on a triangle of 2^25 lattice units they are two units off.
+SurfacePoint point_at(uvec3 vertices, vec2 weights) {
+    return SurfacePoint(vertices, vec3(1.0 - weights.x - weights.y, weights));
 }
 
 // So many rows of samples that they lie about a texel apart.
@@ -81,7 +78,7 @@ int sample_rows(Piece piece, uvec3 vertices, SurfaceMaterial material) {
     if (material.width == 0u) return 1;
     vec2 low = vec2(1.0e30), high = vec2(-1.0e30);
     for (int i = 0; i < piece.count; ++i) {
-        const vec2 uv = texcoord_at(point_at(vertices, corners[piece.first + i]));
+        const vec2 uv = texcoord_at(point_at(vertices, vec2(corners[piece.first + i])));
         low = min(low, uv);
         high = max(high, uv);
     }
@@ -91,14 +88,14 @@ int sample_rows(Piece piece, uvec3 vertices, SurfaceMaterial material) {
 
 // The centroid of part `number` of a triangle that is cut in rows^2 parts; rows run along the side from b to c. Row r has
 // r + 1 parts that point like the triangle, and r between them that point the other way.
-dvec2 centroid_of_part(dvec2 a, dvec2 b, dvec2 c, int number, int rows) {
+vec2 centroid_of_part(vec2 a, vec2 b, vec2 c, int number, int rows) {
     int row = int(sqrt(float(number)));
     row += int((row + 1) * (row + 1) <= number) - int(row * row > number);
     const int place = number - row * row;
     const bool turned = (place & 1) != 0;
-    const double along = double(row) + (turned ? 1.0LF : 2.0LF) / 3.0LF;
-    const double across = double(place >> 1) + (turned ? 2.0LF : 1.0LF) / 3.0LF;
-    return a + ((along - across) * (b - a) + across * (c - a)) / double(rows);
+    const float along = float(row) + (turned ? 1.0 : 2.0) / 3.0;
+    const float across = float(place >> 1) + (turned ? 2.0 : 1.0) / 3.0;
+    return a + ((along - across) * (b - a) + across * (c - a)) / float(rows);
 }
 
 // Sums over samples.
@@ -164,6 +161,7 @@ void main() {
     const SurfaceMaterial material = surface_materials[triangle.w];
     const ivec3 a = surface_position(triangle.x), b = surface_position(triangle.y), c = surface_position(triangle.z);
     const Piece piece = piece_in_voxel(a, b, c, voxel);
+    if (piece.count == 0) return;
 
     const dvec3 cross_product = cross(dvec3(b - a), dvec3(c - a));
     const double twice_area = length(cross_product);
@@ -171,19 +169,20 @@ void main() {
     const double side = double(1 << voxel_shift);
     const int rows = sample_rows(piece, triangle.xyz, material);
     const int parts = rows * rows;
-    const int fan = max(piece.count - 2, 1);
+    const double faces_of_triangle = 0.5LF * twice_area / (side * side * double(parts));
 
     Gathered shown = Gathered(0.0, vec3(0.0), vec3(0.0));
     Gathered hidden = shown;
     const dvec2 first = corners[piece.first];
-    for (int i = 0; i < fan * parts; ++i) {
-        const int next = i / parts + 1;
-        const dvec2 p = corners[piece.first + min(next, piece.count - 1)];
-        const dvec2 q = corners[piece.first + min(next + 1, piece.count - 1)];
-        const double part_of_triangle = abs((p.x - first.x) * (q.y - first.y) - (p.y - first.y) * (q.x - first.x));
-        const double faces = 0.5LF * part_of_triangle * twice_area / (side * side * double(parts));
-        const dvec2 middle = centroid_of_part(first, p, q, i % parts, rows);
-        sample_point(shown, hidden, point_at(triangle.xyz, middle), material, own_normal, max(float(faces), 1.0e-20));
+    for (int fan = 0; fan < max(piece.count - 2, 1); ++fan) {
+        const dvec2 p = corners[piece.first + min(fan + 1, piece.count - 1)];
+        const dvec2 q = corners[piece.first + min(fan + 2, piece.count - 1)];
+        const double share = abs((p.x - first.x) * (q.y - first.y) - (p.y - first.y) * (q.x - first.x));
+        const float faces = max(float(share * faces_of_triangle), 1.0e-20);
+        for (int part = 0; part < parts; ++part) {
+            const vec2 middle = centroid_of_part(vec2(first), vec2(p), vec2(q), part, rows);
+            sample_point(shown, hidden, point_at(triangle.xyz, middle), material, own_normal, faces);
+        }
     }
     float weight = max(shown.weight, ATTRIBUTE_LEAST_WEIGHT);
     if (shown.weight == 0.0) {

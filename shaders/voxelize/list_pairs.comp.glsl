@@ -1,4 +1,5 @@
-// Lists which triangles touch which occupied voxels of a part: those whose ranks lie in `part`.
+// Lists which triangles touch which occupied voxels of a part: those whose ranks lie in `part`. A row in doubt is listed as
+// far as the triangle may touch: gather_attributes finds that nothing of it lies in the other voxels.
 // LARGE=0: a thread is one triangle; one with a large box it leaves in the queue.
 // LARGE=1: a thread is one slice of one queued triangle, of slice_count; it lists every slice_count-th row of row_range.
 // defines: LARGE=0
@@ -42,8 +43,10 @@ void list_voxel(ivec3 place, uint triangle) {
     pairs[pair] = uvec4(uint(place.x) | uint(place.y) << 16, uint(place.z), rank - part.x, triangle);
 }
 
-void list_row(ExactTriangle t, ivec3 low, ivec3 high, ivec2 row, uint triangle) {
-    const ivec2 span = row_span(t, row);
+void list_row(ExactTriangle t, RowSlice slice, ivec3 low, ivec3 high, ivec2 row, uint triangle) {
+    bool in_doubt;
+    const ivec2 filtered = filtered_row_span(t, slice, row.x, in_doubt);
+    const ivec2 span = t.filtered ? filtered : ivec2(t.low.x, t.high.x);
     for (int x = max(span.x, low.x); x <= min(span.y, high.x); ++x) list_voxel(ivec3(x, row) - region_origin, triangle);
 }
 
@@ -63,18 +66,23 @@ void main() {
     const ivec3 high = min(t.high, region_origin + ivec3(region_size.xy - 1, part_slices.y));
     const ivec3 size = high - low + 1;
     if (any(lessThan(size, ivec3(1)))) return;
-    const uint row_count = uint(size.y) * uint(size.z);
 #if LARGE
-    const uint end = min(row_count, row_range.y);
+    const uint end = min(uint(size.y) * uint(size.z), row_range.y);
     for (uint i = row_range.x + thread % slice_count; i < end; i += slice_count) {
+        const ivec2 row = low.yz + ivec2(i % uint(size.y), i / uint(size.y));
+        list_row(t, row_slice(t, row.y), low, high, row, triangle);
+    }
 #else
     if (float(size.x) * float(size.y) * float(size.z) > float(ATTRIBUTE_SMALL_BOX)) {
         enqueue(0u, triangle);
         return;
     }
-    for (uint i = 0u; i < row_count; ++i) {
-#endif
-        const ivec2 row = low.yz + ivec2(i % uint(size.y), i / uint(size.y));
-        list_row(t, low, high, row, triangle);
+    for (int z = low.z; z <= high.z; ++z) {
+        const RowSlice slice = row_slice(t, z);
+        const ivec2 rows = rows_of_slice(t, slice);
+        for (int y = max(rows.x, low.y); y <= min(rows.y, high.y); ++y) {
+            list_row(t, slice, low, high, ivec2(y, z), triangle);
+        }
     }
+#endif
 }
