@@ -208,7 +208,20 @@ def read_vox(path, grid):
     return voxels
 
 
-READERS = {"npy": read_npy, "binvox": read_binvox, "vdb": read_vdb, "vox": read_vox}
+def read_goxel_text(path, grid):
+    """What Goxel exports of a .vox: the places of the editor's scene, colours as RRGGBB."""
+    voxels = {}
+    with open(path) as lines:
+        for line in lines:
+            if line.startswith("#"):
+                continue
+            x, y, z, color = line.split()
+            i, j, k = (int(x) + grid.resolution[0] // 2, int(z), grid.resolution[2] - 1 - int(y) - grid.resolution[2] // 2)
+            voxels[i, j, k] = [float(c) for c in bytes.fromhex(color)]
+    return voxels
+
+
+READERS = {"txt": read_goxel_text, "npy": read_npy, "binvox": read_binvox, "vdb": read_vdb, "vox": read_vox}
 
 
 def compare(found, expected, tolerance):

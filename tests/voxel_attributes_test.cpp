@@ -2,6 +2,7 @@
 #include "voxelizer/voxel_attributes.h"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -276,6 +277,38 @@ TEST_F(VoxelAttributesTest, ATileAloneEqualsItsPlaceInTheWhole) {
         ASSERT_EQ(tile.attributes.normals[number], all.attributes.normals[same]);
     });
     EXPECT_GT(tile.attributes.colors.size(), 500U);
+}
+
+TEST_F(VoxelAttributesTest, ASubsetGathersItsTrianglesAlone) {
+    const Painted painted = random_triangles(10, 200, true);
+    const Painted first = random_triangles(10, 80, true);  // the same stream, ended earlier
+    const Grid grid = unit_cube(32);
+    const Result alone = gather(first, grid);
+    std::vector<std::uint32_t> subset(80);
+    std::iota(subset.rbegin(), subset.rend(), 0U);
+    const GpuSurface surface = upload(painted.surface(grid));
+    const VoxelAttributes attributes =
+        painter_->gather(surface, whole(grid), alone.bits, std::span<const std::uint32_t>(subset));
+    EXPECT_EQ(attributes.colors, alone.attributes.colors);
+    EXPECT_EQ(attributes.normals, alone.attributes.normals);
+}
+
+// As the inside of a solid: occupied, and no triangle near.
+TEST_F(VoxelAttributesTest, VoxelsWithoutSurfaceHaveNoColour) {
+    const Painted painted = random_triangles(11, 1, true);
+    const GpuSurface surface = upload(painted.surface(unit_cube(32)));
+    const Region region = whole(unit_cube(32));
+    BitGrid bits = marker_->voxelize(surface, region);
+    const glm::ivec3 inside(bits.at({0, 0, 0}) ? 31 : 0);
+    ASSERT_FALSE(bits.at(inside));
+    bits.set(inside);
+    const VoxelAttributes attributes = painter_->gather(surface, region, bits);
+    ASSERT_EQ(attributes.colors.size(), bits.count());
+    const std::size_t number = inside.x == 0 ? 0 : attributes.colors.size() - 1;
+    EXPECT_EQ(attributes.colors[number], glm::vec3(0.0F));
+    EXPECT_EQ(attributes.normals[number], glm::vec3(0.0F));
+    BitGrid none(region.size);
+    EXPECT_TRUE(painter_->gather(surface, region, none).colors.empty());
 }
 
 TEST_F(VoxelAttributesTest, LinesPointsAndMereContactHaveColoursToo) {

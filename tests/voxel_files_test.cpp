@@ -1,15 +1,18 @@
 // Voxel files, read back by other readers (read_voxels.py).
 #include "voxelizer/voxel_files.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
+#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/os.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "base/output_file.h"
 #include "scenes/snapshot.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
@@ -135,6 +138,41 @@ Voxels random_voxels(const glm::ivec3& resolution, std::uint32_t seed, bool with
     return voxels;
 }
 
+std::string numbered_bytes(std::size_t count) {
+    std::string bytes;
+    for (std::size_t i = 0; i < count; ++i)
+        bytes += char(1 + i % 200);
+    return bytes;
+}
+
+TEST(OutputFileZeros, AreZerosInAFileAndInAPipe) {
+    const ScratchFolder folder;
+    const std::string data = numbered_bytes(1000);
+    std::string expected;
+    const auto write = [&](OutputFile& file) {
+        expected.clear();
+        for (const std::size_t zeros :
+             {std::size_t(0), std::size_t(7), std::size_t(65535), std::size_t(300000)}) {
+            file.write(data.data(), data.size());
+            file.write_zeros(zeros / 2);
+            file.write_zeros(zeros - zeros / 2);
+            expected += data + std::string(zeros, '\0');
+        }
+        file.commit();
+    };
+    OutputFile file(folder.file("a"));
+    write(file);
+    EXPECT_TRUE(read_text(folder.file("a")) == expected);
+
+    ASSERT_EQ(std::system(("mkfifo " + folder.file("pipe")).c_str()), 0);
+    ASSERT_EQ(std::system(fmt::format("cat {} > {} &", folder.file("pipe"), folder.file("b")).c_str()), 0);
+    OutputFile pipe(folder.file("pipe"));
+    write(pipe);
+    for (int i = 0; i < 100 && read_text(folder.file("b")).size() < expected.size(); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_TRUE(read_text(folder.file("b")) == expected);
+}
+
 class VoxelFiles : public ::testing::TestWithParam<std::string> {};
 
 std::string name_of_ending(const ::testing::TestParamInfo<std::string>& info) {
@@ -211,6 +249,23 @@ TEST(VdbWriter, ItsGridsAreListedByVdbPrint) {
     EXPECT_EQ(code, 0) << answer;
     for (const std::string word : {"Name: density", "Name: Cd", "Name: N", "fog volume", "40 x 70 x 129"})
         EXPECT_NE(answer.find(word), std::string::npos) << "no " << word << " in " << answer;
+}
+
+TEST(VoxWriter, GoxelSeesTheSameScene) {
+    if (std::system("command -v goxel Xvfb > /dev/null 2>&1") != 0)
+        GTEST_SKIP() << "goxel or Xvfb is not installed";
+    Voxels voxels = random_voxels({300, 33, 257}, 14, true);
+    for (glm::vec3& color : voxels.attributes.colors)
+        color = glm::round(color * 4.0F) / 4.0F;
+    const ScratchFolder folder;
+    write_expected(voxels, folder.file("expected"));
+    const std::string path = write_file(voxels, folder, ".vox");
+    const std::string command = fmt::format("bash {} goxel -e {} {} > {} 2>&1", CAIRN_WITH_XVFB,
+                                            folder.file("goxel.txt"), path, folder.file("answer"));
+    const int code = WEXITSTATUS(std::system(command.c_str()));
+    ASSERT_TRUE(code == 0 && std::filesystem::exists(folder.file("goxel.txt")))
+        << read_text(folder.file("answer"));
+    expect_reads(folder.file("goxel.txt"), folder, 0.5001);
 }
 
 TEST(VoxelColours, AreReadBackFromVdb) {
