@@ -59,7 +59,7 @@ void ColorPalette::build() {
     Cells all;
     for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
         if (cells_[cell].count != 0) all.push_back(cell);
-    for (const Cells& part : cut_by_median())
+    for (const Cells& part : cut_by_median(all))
         colors_.emplace_back(glm::round(mean_of(part)));
     move_to_means(all);
 }
@@ -75,7 +75,7 @@ glm::dvec3 ColorPalette::mean_of(const Cells& cells) const {
 }
 
 /// Cuts the part whose colours vary most, along the axis where they do, until there are enough.
-std::vector<ColorPalette::Cells> ColorPalette::cut_by_median() const {
+std::vector<ColorPalette::Cells> ColorPalette::cut_by_median(const Cells& all) const {
     struct Part {
         Cells cells;
         double error = 0.0;  ///< summed square of what colours are off the mean, along `axis`
@@ -94,10 +94,7 @@ std::vector<ColorPalette::Cells> ColorPalette::cut_by_median() const {
         part.error = part.cells.size() > 1 ? error[part.axis] : 0.0;
         return part;
     };
-    Cells all;
-    for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
-        if (cells_[cell].count != 0) all.push_back(cell);
-    std::vector<Part> parts = {measured(std::move(all))};
+    std::vector<Part> parts = {measured(all)};
     while (parts.size() < capacity) {
         const auto worst = std::ranges::max_element(parts, {}, &Part::error);
         if (worst->error <= 0.0) break;
@@ -116,6 +113,7 @@ std::vector<ColorPalette::Cells> ColorPalette::cut_by_median() const {
         parts.push_back(measured(Cells(middle, cells.end())));
     }
     std::vector<Cells> out;
+    out.reserve(parts.size());
     for (Part& part : parts)
         out.push_back(std::move(part.cells));
     return out;

@@ -37,7 +37,7 @@ private:
     using Cells = std::vector<std::uint32_t>;  ///< numbers of cells that are not empty
 
     [[nodiscard]] static std::uint32_t cell_of(const glm::u8vec3& color);
-    [[nodiscard]] std::vector<Cells> cut_by_median() const;
+    [[nodiscard]] std::vector<Cells> cut_by_median(const Cells& all) const;
     [[nodiscard]] glm::dvec3 mean_of(const Cells& cells) const;
     void move_to_means(const Cells& all);
 

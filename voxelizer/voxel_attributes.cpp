@@ -13,6 +13,7 @@
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
 #include "voxelizer/far_pieces.h"
+#include "voxelizer/masked_marker.h"
 #include "voxelizer/pyramid_builder.h"
 
 namespace cairn::voxelizer {
@@ -41,12 +42,6 @@ void check(const GpuSurface& surface, const Region& region, const BitGrid& bits)
                                 bit_bytes(bits.size) >> 20, limit >> 20),
                     "gather them tile by tile");
     }
-}
-
-void set_region(const gl::Program& program, const Region& region) {
-    program.set("region_origin", region.origin);
-    program.set("region_size", region.size);
-    program.set("voxel_shift", LATTICE_BITS - region.level);
 }
 
 void set(const gl::Program& program, const char* name, unsigned x, unsigned y) {

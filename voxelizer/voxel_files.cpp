@@ -31,6 +31,7 @@ constexpr std::array<Format, 4> formats = {{{".npy", make_npy_writer},
 
 std::vector<std::string> voxel_file_endings() {
     std::vector<std::string> endings;
+    endings.reserve(formats.size());
     for (const Format& format : formats)
         endings.emplace_back(format.ending);
     return endings;

@@ -105,7 +105,7 @@ struct LeafLayout {
 private:
     static std::size_t leaf_of(const glm::ivec3& v) {
         const glm::ivec3 leaf = v / leaf_side;
-        return std::size_t((leaf.x * node_leaves + leaf.y) * node_leaves + leaf.z);
+        return (std::size_t(leaf.x) * node_leaves + std::size_t(leaf.y)) * node_leaves + std::size_t(leaf.z);
     }
     static std::uint64_t bit_of(const glm::ivec3& v) {
         return std::uint64_t(1) << (v.y % leaf_side * leaf_side + v.z % leaf_side);
@@ -321,7 +321,9 @@ void VdbWriter::write_topology(const GridKind& kind, Bytes& out) {
         UpperMask mask{};
         for (std::size_t i = run.first; i < run.last; ++i) {
             const glm::ivec3 place = nodes_[i].origin % upper_side / VOXEL_TILE_SIDE;
-            const auto bit = std::size_t((place.x * upper_nodes + place.y) * upper_nodes + place.z);
+            const std::size_t bit =
+                (std::size_t(place.x) * upper_nodes + std::size_t(place.y)) * upper_nodes +
+                std::size_t(place.z);
             mask[bit / 64] |= std::uint64_t(1) << bit % 64;
         }
         out.put(mask);
