@@ -1,5 +1,6 @@
 #include "base/output_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <random>
@@ -32,6 +33,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
         file_ = std::fopen(temporary_.c_str(), "wbx");
     }
     if (file_ == nullptr) fail(path_, "cannot write", errno);
+    std::setvbuf(file_, nullptr, _IOFBF, 1U << 20);
 }
 
 OutputFile::~OutputFile() {
@@ -41,12 +43,39 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(const void* data, std::size_t size_bytes) {
-    if (size_bytes != 0 && std::fwrite(data, 1, size_bytes, file_) != size_bytes) {
+    if (size_bytes == 0) return;
+    settle_zeros();
+    if (std::fwrite(data, 1, size_bytes, file_) != size_bytes) {
         fail(path_, "cannot write", errno);
     }
 }
 
+void OutputFile::write_zeros(std::uint64_t size_bytes) {
+    zeros_ += size_bytes;
+}
+
+// A seek empties stdio's buffer, so that short runs are cheaper written. What is written in place may be a
+// pipe, or hold older bytes: it gets every zero.
+void OutputFile::settle_zeros() {
+    constexpr std::uint64_t worth_a_seek = 1U << 16;
+    static const char zeros[worth_a_seek] = {};
+    const std::uint64_t count = std::exchange(zeros_, 0);
+    if (count >= worth_a_seek && !temporary_.empty()) {
+        if (fseeko(file_, off_t(count), SEEK_CUR) != 0) fail(path_, "cannot write", errno);
+        return;
+    }
+    for (std::uint64_t left = count; left != 0;) {
+        const std::size_t part = std::size_t(std::min(left, worth_a_seek));
+        if (std::fwrite(zeros, 1, part, file_) != part) fail(path_, "cannot write", errno);
+        left -= part;
+    }
+}
+
 void OutputFile::commit() {
+    if (zeros_ != 0) {
+        --zeros_;  // the last byte is written, for a file does not grow by a seek
+        write("", 1);
+    }
     // fclose reports what the buffers still held, so a full disk is seen before the rename.
     const int closed = std::fclose(std::exchange(file_, nullptr));
     const int code = errno;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 
@@ -22,14 +23,18 @@ public:
     ~OutputFile();
 
     void write(const void* data, std::size_t size_bytes);
+    /// Zeros that follow; long ones take no room on disks that can leave them out.
+    void write_zeros(std::uint64_t size_bytes);
     void commit();
 
 private:
+    void settle_zeros();
     void discard();
 
     std::filesystem::path path_;
     std::filesystem::path temporary_;  // empty when written in place
     std::FILE* file_ = nullptr;
+    std::uint64_t zeros_ = 0;  // skipped since the last write
 };
 
 }  // namespace cairn

@@ -1,8 +1,14 @@
 #include "voxelizer/write_npy.h"
 
+#include <array>
+#include <cstring>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "base/output_file.h"
+#include "voxelizer/voxel_rows.h"
+#include "voxelizer/voxel_tiles.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -21,29 +27,59 @@ std::string header(const glm::ivec3& size) {
     return text + dictionary;
 }
 
+/// Eight bits as eight bytes, the lowest first in memory.
+const std::array<std::array<std::uint8_t, 8>, 256> bytes_of_bits = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> table{};
+    for (unsigned bits = 0; bits < 256; ++bits)
+        for (unsigned i = 0; i < 8; ++i)
+            table[bits][i] = std::uint8_t(bits >> i & 1U);
+    return table;
+}();
+
+class NpyWriter final : public VoxelWriter {
+public:
+    NpyWriter(const std::filesystem::path& path, const glm::ivec3& size)
+        : file_(path),
+          rows_(size, 2),
+          bytes_((std::size_t(size.z) + 31) / 32 * 32),
+          row_bytes_(std::size_t(size.z)) {
+        const std::string text = header(size);
+        file_.write(text.data(), text.size());
+    }
+
+    void add(const VoxelTile& tile) override { rows_.add(tile, *this); }
+    void finish() override {
+        rows_.finish(*this);
+        file_.commit();
+    }
+
+    void empty_rows(std::uint64_t count) { file_.write_zeros(count * row_bytes_); }
+    void row(std::span<const std::uint32_t> words) {
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            for (std::size_t byte = 0; byte < 4; ++byte)
+                std::memcpy(&bytes_[32 * i + 8 * byte], bytes_of_bits[words[i] >> 8 * byte & 0xFFU].data(),
+                            8);
+        }
+        file_.write(bytes_.data(), row_bytes_);
+    }
+
+private:
+    OutputFile file_;
+    VoxelRows rows_;
+    std::vector<std::uint8_t> bytes_;
+    std::size_t row_bytes_;
+};
+
 }  // namespace
 
+std::unique_ptr<VoxelWriter> make_npy_writer(const std::filesystem::path& path, const Grid& grid) {
+    return std::make_unique<NpyWriter>(path, grid.resolution);
+}
+
 void write_npy(const BitGrid& bits, const std::filesystem::path& path) {
-    OutputFile file(path);
-    const std::string text = header(bits.size);
-    file.write(text.data(), text.size());
-    const glm::ivec3& size = bits.size;
-    // Rows of bits run along x, rows of the file along z: 32 slabs at a time read each word once.
-    const std::size_t slab_bytes = std::size_t(size.y) * std::size_t(size.z);
-    std::vector<std::uint8_t> slabs(slab_bytes * std::size_t(std::min(size.x, 32)));
-    for (int x = 0; x < size.x; x += 32) {
-        const int count = std::min(size.x - x, 32);
-        for (int y = 0; y < size.y; ++y) {
-            for (int z = 0; z < size.z; ++z) {
-                const std::uint32_t word = bits.words[bits.word_index(x, y, z)];
-                std::uint8_t* out = &slabs[std::size_t(y) * std::size_t(size.z) + std::size_t(z)];
-                for (int i = 0; i < count; ++i, out += slab_bytes)
-                    *out = std::uint8_t(word >> i & 1U);
-            }
-        }
-        file.write(slabs.data(), slab_bytes * std::size_t(count));
-    }
-    file.commit();
+    NpyWriter writer(path, bits.size);
+    add_tiles(writer, bits);
+    writer.finish();
 }
 
 }  // namespace cairn::voxelizer
