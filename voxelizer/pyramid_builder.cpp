@@ -21,18 +21,19 @@ BitGrid read_bits(const gl::Buffer& bits, const glm::ivec3& size) {
 PyramidBuilder::PyramidBuilder(const gl::ShaderSource& shaders)
     : halve_(gl::build_compute(shaders, "voxelize/halve.comp.glsl")) {}
 
-BitmaskPyramid PyramidBuilder::build(const gl::Buffer& bits, const glm::ivec3& size) {
+BitmaskPyramid PyramidBuilder::build(const gl::Buffer& bits, const glm::ivec3& size, Reduction reduction) {
     std::vector<BitGrid> levels;
     levels.push_back(read_bits(bits, size));
     const gl::Buffer* fine = &bits;
     std::array<gl::Buffer, 2> coarse;
-    for (glm::ivec3 fine_size = size; fine_size != glm::ivec3(1);) {
-        const glm::ivec3 half = (fine_size + 1) / 2;
+    glm::ivec3 half = coarser_size(size, reduction);
+    for (glm::ivec3 fine_size = size; fine_size != half; half = coarser_size(fine_size, reduction)) {
         gl::Buffer& out = coarse[levels.size() % 2];
         out = gl::Buffer(std::max<std::size_t>(bit_bytes(half), 16), "voxel pyramid");
         fine->bind_storage(SSBO_HALVE_FINE);
         out.bind_storage(SSBO_HALVE_COARSE);
         halve_.set("fine_size", fine_size);
+        halve_.set("coarse_size", half);
         halve_.use();
         gl::dispatch_threads(bit_bytes(half) / sizeof(std::uint32_t), VOXEL_GROUP);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

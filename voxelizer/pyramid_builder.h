@@ -16,7 +16,8 @@ public:
     explicit PyramidBuilder(const gl::ShaderSource& shaders);
 
     /// @param bits  BitGrid::words of the finest level, `size` voxels
-    [[nodiscard]] BitmaskPyramid build(const gl::Buffer& bits, const glm::ivec3& size);
+    [[nodiscard]] BitmaskPyramid build(const gl::Buffer& bits, const glm::ivec3& size,
+                                       Reduction reduction = Reduction::xyz);
 
 private:
     gl::Program halve_;

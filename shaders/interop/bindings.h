@@ -14,6 +14,9 @@
 #define SSBO_VOXEL_QUEUE 6   // VOXEL_QUEUE_* counters, then the queues
 #define SSBO_VOXEL_SUBSET 7  // triangles to mark, when not all
 #define SSBO_VOXEL_CANDIDATES 7  // voxels that a mask may cut away (shaders/voxelize/candidates.glsl)
+#define SSBO_RASTER_LISTS 6  // primitives to rasterize (shaders/voxelize/raster_lists.glsl)
+#define TEXTURE_SLICES 0     // a target of the raster methods, when its slices are joined
+#define ATTRIBUTE_POSITION 0
 #define SSBO_HALVE_FINE 0    // BitGrid::words of a level, and of the next coarser one (pass that reads no surface)
 #define SSBO_HALVE_COARSE 1
 

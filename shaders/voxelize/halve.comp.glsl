@@ -1,4 +1,5 @@
-// One thread is one word of the coarser level: the OR of 2 x 2 x 2 voxels of the finer one (Forest et al. 2009, 2.3).
+// One thread is one word of the coarser level: the OR of 2 x 2 x 2 voxels of the finer one, or of 2 x 2 x 1 where all
+// slices are kept (Forest et al. 2009, section 2.3, Figure 4).
 #include "interop/bindings.h"
 #include "interop/config.h"
 
@@ -8,6 +9,7 @@ layout(std430, binding = SSBO_HALVE_FINE) restrict readonly buffer FineBits { ui
 layout(std430, binding = SSBO_HALVE_COARSE) restrict writeonly buffer CoarseBits { uint coarse_bits[]; };
 
 uniform ivec3 fine_size;
+uniform ivec3 coarse_size;  // of equal z: all slices are kept
 
 uint fine_word(ivec3 place, int words_per_row) {
     if (place.x >= words_per_row || place.y >= fine_size.y || place.z >= fine_size.z) return 0u;
@@ -24,7 +26,6 @@ uint or_of_pairs(uint word) {
 }
 
 void main() {
-    const ivec3 coarse_size = (fine_size + 1) >> 1;
     const int fine_words = (fine_size.x + 31) >> 5;
     const int coarse_words = (coarse_size.x + 31) >> 5;
     const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
@@ -33,9 +34,11 @@ void main() {
     const ivec3 place = ivec3(word % coarse_words, word / coarse_words % coarse_size.y,
                               word / coarse_words / coarse_size.y);
     uint halves[2] = uint[2](0u, 0u);
-    for (int corner = 0; corner < 8; ++corner) {
+    // One slice is its own half: then both steps agree.
+    const int slices = coarse_size.z == fine_size.z ? 1 : 2;
+    for (int corner = 0; corner < 4 * slices; ++corner) {
         const ivec3 offset = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        halves[offset.x] |= fine_word(2 * place + offset, fine_words);
+        halves[offset.x] |= fine_word(place * ivec3(2, 2, slices) + offset, fine_words);
     }
     coarse_bits[word] = or_of_pairs(halves[0]) | or_of_pairs(halves[1]) << 16;
 }
