@@ -36,13 +36,12 @@ bool has_extension(std::string_view name) {
 }
 
 bool takes_vertex_path(LayerPath path) {
-    const bool offered = RasterVoxelizer::has_vertex_path();
-    if (path == LayerPath::vertex_shader && !offered) {
+    if (path == LayerPath::vertex_shader && !RasterVoxelizer::has_vertex_path()) {
         throw Error(Fault::context, "layers by the vertex shader",
                     "the driver lacks ARB_shader_viewport_layer_array, or storage buffers in vertex shaders",
                     "use the geometry shader");
     }
-    return offered && path != LayerPath::geometry_shader;
+    return path == LayerPath::vertex_shader;
 }
 
 /// A power of two, so that scaling by it is exact.
@@ -64,7 +63,8 @@ RasterVoxelizer::RasterVoxelizer(Method method, const gl::ShaderSource& shaders,
       method_(method),
       vertex_path_(takes_vertex_path(path)),
       list_(gl::build_compute(shaders, "voxelize/list_primitives.comp.glsl")),
-      unite_(gl::build_compute(shaders, "voxelize/unite_slices.comp.glsl")),
+      unite_along_x_(gl::build_compute(shaders, "voxelize/unite_slices.comp.glsl", {{"ALONG_X", "1"}})),
+      unite_(gl::build_compute(shaders, "voxelize/unite_slices.comp.glsl", {{"ALONG_X", "0"}})),
       lists_(all_list_words * sizeof(std::uint32_t), "primitives to rasterize") {
     GLuint vertex_array = 0;
     glCreateVertexArrays(1, &vertex_array);
@@ -189,21 +189,22 @@ void RasterVoxelizer::draw_list(unsigned kind, const RasterTile& tile, bool mask
 }
 
 void RasterVoxelizer::unite(const Region& region, const RasterTile& tile) {
-    unite_.set("region_size", region.size);
-    unite_.set("tile_place", tile.place);
-    unite_.set("tile_size", tile.size);
-    unite_.use();
     const int row_words = (tile.size.x + 31) / 32;
     for (int layer = 0; layer < directions(); ++layer) {
         const int axis = directions() == 1 ? 2 : layer;
         const int threads =
             axis == 0 ? tile.size.y * tile.size.z : row_words * (axis == 1 ? tile.size.z : tile.size.y);
-        unite_.set("axis", axis);
-        unite_.set("layer", layer);
+        const gl::Program& uniting = axis == 0 ? unite_along_x_ : unite_;
+        uniting.set("region_size", region.size);
+        uniting.set("tile_place", tile.place);
+        uniting.set("tile_size", tile.size);
+        uniting.set("axis", axis);
+        uniting.set("layer", layer);
+        uniting.use();
         for (int target = 0; target < targets_.target_count(); ++target) {
             if (target * RASTER_TARGET_SLICES >= tile.size[axis]) break;
             glBindTextureUnit(TEXTURE_SLICES, targets_.texture(target));
-            unite_.set("first_slice", target * RASTER_TARGET_SLICES);
+            uniting.set("first_slice", target * RASTER_TARGET_SLICES);
             gl::dispatch_threads(std::size_t(threads), VOXEL_GROUP);
             // Each dispatch adds to words of the one before.
             glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -17,7 +17,6 @@ namespace cairn::voxelizer {
 
 /// How a primitive finds its layer.
 enum class LayerPath : std::uint8_t {
-    automatic,        ///< vertex_shader where the driver offers it
     geometry_shader,  ///< OpenGL 4.5 alone
     vertex_shader     ///< ARB_shader_viewport_layer_array, and storage buffers in vertex shaders
 };
@@ -47,7 +46,7 @@ public:
     /// @param method  one of the three above
     /// @throws Error  Fault::context: the driver cannot take the path that was asked for.
     explicit RasterVoxelizer(Method method, const gl::ShaderSource& shaders = {},
-                             LayerPath path = LayerPath::automatic);
+                             LayerPath path = LayerPath::geometry_shader);
 
     /// Whether the current driver offers LayerPath::vertex_shader.
     [[nodiscard]] static bool has_vertex_path();
@@ -66,7 +65,8 @@ private:
     Method method_;
     bool vertex_path_;
     gl::Program list_;
-    gl::Program unite_;
+    gl::Program unite_along_x_;
+    gl::Program unite_;                                                      ///< along y and z
     std::map<std::tuple<unsigned, bool, bool, int>, gl::Program> programs_;  ///< kind, cover, masked, targets
     SliceTargets targets_;
     gl::Buffer lists_;

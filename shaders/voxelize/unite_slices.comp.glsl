@@ -2,6 +2,8 @@
 //
 // Along x, a channel of a texel is a word of a row: one thread is one texel. Along y and z, one thread takes 32 texels of
 // a row, and turns the 32 x 32 bits of each channel: slices by columns become columns by slices.
+// defines: ALONG_X=0
+// defines: ALONG_X=1
 #include "voxelize/bits.glsl"
 #include "interop/config.h"
 
@@ -10,7 +12,7 @@ layout(local_size_x = VOXEL_GROUP) in;
 layout(binding = TEXTURE_SLICES) uniform usampler2DArray target_slices;
 uniform ivec3 tile_place;  // voxels from the region's low corner; x is a multiple of 32
 uniform ivec3 tile_size;
-uniform int axis;
+uniform int axis;  // 1 or 2, where not along x
 uniform int layer;
 uniform int first_slice;
 
@@ -21,7 +23,8 @@ void unite(ivec3 place, uint bits) {
     if (bits != 0u) voxel_bits[(v.z * region_size.y + v.y) * words_per_row + (v.x >> 5)] |= bits;
 }
 
-void unite_along_x(ivec2 texel) {
+#if ALONG_X
+void unite_texel(ivec2 texel) {
     const uvec4 bits = texelFetch(target_slices, ivec3(texel, layer), 0);
     for (int channel = 0; channel < 4; ++channel) {
         const int x = first_slice + 32 * channel;
@@ -31,6 +34,7 @@ void unite_along_x(ivec2 texel) {
     }
 }
 
+#else
 uvec4 rows[32];
 
 // Bit j of row i becomes bit i of row j, in all channels at once (Warren, Hacker's Delight, section 7-3).
@@ -46,7 +50,7 @@ void turn_rows() {
     }
 }
 
-void unite_along_y_or_z(int word, int other) {
+void unite_texels(int word, int other) {
     uvec4 any_bits = uvec4(0u);
     for (int i = 0; i < 32; ++i) {
         const ivec2 texel = ivec2(32 * word + i, other);
@@ -66,11 +70,16 @@ void unite_along_y_or_z(int word, int other) {
     }
 }
 
+#endif
+
 void main() {
     const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP);
-    const int across = axis == 0 ? tile_size.y : (tile_size.x + 31) >> 5;
-    const int down = axis == 2 ? tile_size.y : tile_size.z;
+    const int across = ALONG_X != 0 ? tile_size.y : (tile_size.x + 31) >> 5;
+    const int down = ALONG_X == 0 && axis == 2 ? tile_size.y : tile_size.z;
     if (thread >= across * down) return;
-    if (axis == 0) unite_along_x(ivec2(thread % across, thread / across));
-    else unite_along_y_or_z(thread % across, thread / across);
+#if ALONG_X
+    unite_texel(ivec2(thread % across, thread / across));
+#else
+    unite_texels(thread % across, thread / across);
+#endif
 }
