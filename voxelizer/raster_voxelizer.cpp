@@ -11,6 +11,7 @@
 #include "gl/draw_state.h"
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
+#include "voxelizer/far_clip.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -96,6 +97,8 @@ const gl::Program& RasterVoxelizer::program(unsigned kind, bool cover, bool mask
 void RasterVoxelizer::mark(const GpuSurface& surface, const Region& region, std::span<const ChunkPart> parts,
                            gl::Buffer& bits) {
     bits.fill(0);
+    std::optional<GpuSurfaceChunk> far;
+    if (!surface.far_triangles.empty()) far = upload_chunk(clip_far_triangles(surface.far_triangles));
     const gl::DrawStateGuard guard;
     glBindVertexArray(vertex_array_.id());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, lists_.id());
@@ -113,8 +116,12 @@ void RasterVoxelizer::mark(const GpuSurface& surface, const Region& region, std:
         lists_.bind_storage(SSBO_RASTER_LISTS);
         glEnable(GL_COLOR_LOGIC_OP);
         for (std::size_t chunk = 0; chunk < surface.chunks.size(); ++chunk) {
-            surface.bind(chunk);
+            surface.bind(surface.chunks[chunk]);
             draw_chunk(surface.chunks[chunk].positions, tile, parts[chunk], surface.has_mask);
+        }
+        if (far) {
+            surface.bind(*far);
+            draw_chunk(far->positions, tile, {far->triangle_count, std::nullopt}, surface.has_mask);
         }
         glDisable(GL_COLOR_LOGIC_OP);
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
