@@ -26,7 +26,6 @@ DrawStateGuard::DrawStateGuard() {
     glGetFloatv(GL_VIEWPORT, viewport_.data());
     glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &framebuffer_);
     glGetIntegerv(GL_VERTEX_ARRAY_BINDING, &vertex_array_);
-    glGetIntegerv(GL_DRAW_INDIRECT_BUFFER_BINDING, &indirect_buffer_);
     glGetIntegerv(GL_ACTIVE_TEXTURE, &active_texture_);
     glActiveTexture(GL_TEXTURE0);
     glGetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &texture_2d_array_);
@@ -49,7 +48,6 @@ DrawStateGuard::~DrawStateGuard() {
     glViewportIndexedfv(0, viewport_.data());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, GLuint(framebuffer_));
     glBindVertexArray(GLuint(vertex_array_));
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, GLuint(indirect_buffer_));
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D_ARRAY, GLuint(texture_2d_array_));
     glBindSampler(0, GLuint(sampler_));

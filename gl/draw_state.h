@@ -11,7 +11,7 @@ namespace cairn::gl {
 /// any behind.
 ///
 /// Covers tests, blending, logic operation, colour mask, culling, polygon mode, widths of lines and points,
-/// viewport, draw framebuffer, vertex array and indirect buffer, and texture and sampler of unit 0.
+/// viewport, draw framebuffer, vertex array, and texture and sampler of unit 0.
 class DrawStateGuard {
 public:
     DrawStateGuard();
@@ -36,7 +36,6 @@ private:
     std::array<GLfloat, 4> viewport_{};
     GLint framebuffer_ = 0;
     GLint vertex_array_ = 0;
-    GLint indirect_buffer_ = 0;
     GLint active_texture_ = 0;
     GLint texture_2d_array_ = 0;
     GLint sampler_ = 0;

@@ -66,7 +66,7 @@ RasterTile tile_at(const Region& region, const glm::ivec3& place, const glm::ive
 
 glm::ivec2 RasterTile::plane(int directions) const {
     if (directions == 1) return {size.x, size.y};
-    return {std::max(size.x, size.y), std::max(size.y, size.z)};
+    return {std::max(size.x, std::min(size.y, size.z)), std::max(size.y, size.z)};
 }
 
 int RasterTile::slices(int directions) const {

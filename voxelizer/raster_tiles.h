@@ -19,6 +19,9 @@ struct RasterTile {
     /// Texels that the layers of all directions take.
     [[nodiscard]] glm::ivec2 plane(int directions) const;
     [[nodiscard]] int slices(int directions) const;
+    /// The layer that looks along x lies so that the longer of y and z goes downwards, as in the other two: a
+    /// tall tile does not make all layers wide.
+    [[nodiscard]] bool tall() const { return size.y > size.z; }
     [[nodiscard]] int longest_side() const;
 };
 

@@ -1,7 +1,6 @@
 #include "voxelizer/raster_voxelizer.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <string_view>
 
@@ -17,10 +16,9 @@ namespace cairn::voxelizer {
 namespace {
 
 /// Of the lists of shaders/voxelize/raster_lists.glsl.
-constexpr std::size_t command_words = std::size_t(RASTER_KINDS) * RASTER_COMMAND_WORDS;
 constexpr std::size_t list_words = 3 * std::size_t(VOXEL_BATCH_TRIANGLES);
 constexpr std::size_t all_list_words =
-    command_words + RASTER_KINDS * (list_words + std::size_t(VOXEL_BATCH_TRIANGLES));
+    RASTER_KINDS + RASTER_KINDS * (list_words + std::size_t(VOXEL_BATCH_TRIANGLES));
 
 unsigned corners_of(unsigned kind) {
     return kind == RASTER_SEGMENTS ? 2 : kind == RASTER_POINTS ? 1 : 3;
@@ -101,7 +99,6 @@ void RasterVoxelizer::mark(const GpuSurface& surface, const Region& region, std:
     if (!surface.far_triangles.empty()) far = upload_chunk(clip_far_triangles(surface.far_triangles));
     const gl::DrawStateGuard guard;
     glBindVertexArray(vertex_array_.id());
-    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, lists_.id());
     glLogicOp(GL_OR);
     for (const RasterTile& tile : raster_tiles(region, directions())) {
         const glm::ivec2 plane = tile.plane(directions());
@@ -137,47 +134,39 @@ void RasterVoxelizer::draw_chunk(const gl::Buffer& positions, const RasterTile& 
     for (std::size_t first = 0; first < part.count; first += VOXEL_BATCH_TRIANGLES) {
         if (part.subset) part.subset->bind_storage(SSBO_VOXEL_SUBSET);
         const std::size_t count = std::min<std::size_t>(part.count - first, VOXEL_BATCH_TRIANGLES);
-        list_batch(tile, first, count, part.subset.has_value());
+        const Counts counts = list_batch(tile, first, count, part.subset.has_value());
         for (unsigned kind = 0; kind < RASTER_KINDS; ++kind) {
-            if (kind == RASTER_FAR && is_conservative()) continue;  // no need to tell them apart
-            draw_list(kind, tile, masked);
+            if (counts[kind] > 0) draw_list(kind, counts[kind], tile, masked);
         }
     }
 }
 
-void RasterVoxelizer::list_batch(const RasterTile& tile, std::size_t first, std::size_t count,
-                                 bool has_subset) {
-    std::array<std::uint32_t, command_words> commands{};
-    for (std::size_t kind = 0; kind < RASTER_KINDS; ++kind) {
-        std::uint32_t* const command = &commands[kind * RASTER_COMMAND_WORDS];
-        if (vertex_path_) {  // vertices, instances, first, first instance
-            command[1] = is_conservative() ? 1 : std::uint32_t(directions());
-        } else {  // indices, instances, first index, base vertex, first instance
-            command[1] = 1;
-            command[2] = std::uint32_t(command_words + kind * list_words);
-        }
-    }
-    lists_.write(0, commands.data(), sizeof(commands));
+RasterVoxelizer::Counts RasterVoxelizer::list_batch(const RasterTile& tile, std::size_t first,
+                                                    std::size_t count, bool has_subset) {
+    lists_.fill(0, sizeof(Counts), 0);
     list_.set("first", unsigned(first));
     list_.set("count", unsigned(count));
     list_.set("has_subset", int(has_subset));
     list_.set("tile_low", tile.lattice_low);
     list_.set("tile_size", tile.size);
     list_.set("voxel_shift", tile.voxel_shift);
-    list_.set("always_triangles", int(vertex_path_ && is_conservative()));
     list_.set("split_far", int(!is_conservative()));
     list_.use();
     gl::dispatch_threads(count, VOXEL_GROUP);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
+    Counts counts{};
+    lists_.read(0, counts.data(), sizeof(counts));
+    return counts;
 }
 
-void RasterVoxelizer::draw_list(unsigned kind, const RasterTile& tile, bool masked) {
+void RasterVoxelizer::draw_list(unsigned kind, unsigned count, const RasterTile& tile, bool masked) {
     const bool cover = is_conservative() || kind == RASTER_FAR;
     const gl::Program& drawing = program(kind, cover, masked);
     drawing.set("tile_low", tile.lattice_low);
     drawing.set("region_end", tile.region_end);
     drawing.set("voxel_shift", tile.voxel_shift);
+    drawing.set("tall", int(tile.tall()));
     drawing.set("tile_middle", 0.5F * float(tile.longest_side()));
     drawing.set("viewport_scale", 2.0F / float(viewport_side(tile.plane(directions()))));
     drawing.set("half_pixel", is_conservative() ? 0.5F : 0.0F);
@@ -186,12 +175,14 @@ void RasterVoxelizer::draw_list(unsigned kind, const RasterTile& tile, bool mask
     drawing.use();
     constexpr std::array<GLenum, 3> modes = {GL_POINTS, GL_LINES, GL_TRIANGLES};
     const GLenum mode = vertex_path_ && cover ? GL_TRIANGLES : modes[corners_of(kind) - 1];
-    const std::size_t place = std::size_t(kind) * RASTER_COMMAND_WORDS * sizeof(std::uint32_t);
-    const void* const command = reinterpret_cast<const void*>(place);
     if (vertex_path_) {
-        glDrawArraysIndirect(mode, command);
+        const unsigned vertices = cover ? 3 : corners_of(kind);
+        const int instances = is_conservative() ? 1 : directions();
+        glDrawArraysInstanced(mode, 0, GLsizei(count * vertices), instances);
     } else {
-        glDrawElementsIndirect(mode, GL_UNSIGNED_INT, command);
+        const std::size_t first = (RASTER_KINDS + kind * list_words) * sizeof(std::uint32_t);
+        glDrawElements(mode, GLsizei(count * corners_of(kind)), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(first));
     }
 }
 
@@ -206,6 +197,7 @@ void RasterVoxelizer::unite(const Region& region, const RasterTile& tile) {
         uniting.set("tile_place", tile.place);
         uniting.set("tile_size", tile.size);
         uniting.set("axis", axis);
+        uniting.set("tall", int(tile.tall()));
         uniting.set("layer", layer);
         uniting.use();
         for (int target = 0; target < targets_.target_count(); ++target) {

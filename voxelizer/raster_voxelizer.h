@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "gl/handle.h"
 #include "gl/program.h"
+#include "shaders/interop/config.h"
 #include "voxelizer/raster_tiles.h"
 #include "voxelizer/slice_targets.h"
 #include "voxelizer/voxelizer.h"
@@ -52,11 +54,15 @@ public:
     [[nodiscard]] static bool has_vertex_path();
 
 private:
+    using Counts = std::array<std::uint32_t, RASTER_KINDS>;
+
     void mark(const GpuSurface& surface, const Region& region, std::span<const ChunkPart> parts,
               gl::Buffer& bits) override;
     void draw_chunk(const gl::Buffer& positions, const RasterTile& tile, const ChunkPart& part, bool masked);
-    void list_batch(const RasterTile& tile, std::size_t first, std::size_t count, bool has_subset);
-    void draw_list(unsigned kind, const RasterTile& tile, bool masked);
+    /// How many primitives of each kind there are.
+    [[nodiscard]] Counts list_batch(const RasterTile& tile, std::size_t first, std::size_t count,
+                                    bool has_subset);
+    void draw_list(unsigned kind, unsigned count, const RasterTile& tile, bool masked);
     void unite(const Region& region, const RasterTile& tile);
     [[nodiscard]] const gl::Program& program(unsigned kind, bool cover, bool masked);
     [[nodiscard]] bool is_conservative() const { return method_ == Method::three_axis_conservative; }

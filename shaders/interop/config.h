@@ -45,7 +45,6 @@
 #define RASTER_FAR 3
 #define RASTER_KINDS 4
 #define RASTER_FAR_VOXELS 8192
-#define RASTER_COMMAND_WORDS 8  // the draw command of a list: five words for elements, four for arrays
 
 // Alpha masks (shaders/voxelize/alpha_mask.glsl, voxelizer/exact_mask.h). Texture coordinates are rounded to
 // 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a texel when a mask is read.

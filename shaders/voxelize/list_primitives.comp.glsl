@@ -8,16 +8,14 @@ layout(std430, binding = SSBO_VOXEL_SUBSET) restrict readonly buffer VoxelSubset
 uniform uint first;  // triangle, or place in the subset
 uniform uint count;
 uniform int has_subset;
-uniform ivec3 tile_low;        // lattice units
-uniform ivec3 tile_size;       // voxels
+uniform ivec3 tile_low;   // lattice units
+uniform ivec3 tile_size;  // voxels
 uniform int voxel_shift;
-uniform int always_triangles;  // three vertices are drawn of any kind
-uniform int split_far;         // a list for far triangles
+uniform int split_far;    // a list for far triangles
 
 void list(uint kind, uvec3 vertices, uint triangle) {
     const uint corners = corners_of(kind);
-    const uint drawn = always_triangles != 0 ? 3u : corners;
-    const uint place = atomicAdd(raster_lists[kind * RASTER_COMMAND_WORDS], drawn) / drawn;
+    const uint place = atomicAdd(raster_lists[kind], 1u);
     for (uint i = 0u; i < corners; ++i) raster_lists[first_vertex(kind) + place * corners + i] = vertices[i];
     raster_lists[triangle_place(kind, place)] = triangle;
 }

@@ -17,6 +17,7 @@
 uniform ivec3 tile_low;         // lattice units
 uniform ivec3 region_end;       // the region's high corner, lattice units from tile_low
 uniform int voxel_shift;
+uniform int tall;               // the layer of x has y downwards, not z
 uniform float tile_middle;      // half the longest side of the tile, voxels: where planes and sides are anchored
 uniform float viewport_scale;   // clip units a voxel: the viewport's side is a power of two, so that scaling is exact
 uniform float half_pixel;       // 0.5: fragments touch the primitive; 0: their centres lie in it
@@ -37,7 +38,10 @@ struct Projection {
 };
 
 // The plane that a direction looks at, then depth.
-ivec3 turned(ivec3 p, int axis) { return axis == 0 ? p.yzx : axis == 1 ? p.xzy : p; }
+ivec3 turned(ivec3 p, int axis) {
+    if (axis == 0) return tall != 0 ? p.zyx : p.yzx;
+    return axis == 1 ? p.xzy : p;
+}
 
 int dominant_axis(ivec3 corners[CORNERS]) {
 #if CORNERS == 3

@@ -1,5 +1,5 @@
-// The primitives of a batch that may meet a tile, one list a kind (RASTER_*): the draw commands, then the numbers of
-// their vertices, then the numbers of their triangles in the bound chunk.
+// The primitives of a batch that may meet a tile, one list a kind (RASTER_*): how many each holds, then the numbers
+// of their vertices, then the numbers of their triangles in the bound chunk.
 #include "interop/bindings.h"
 #include "interop/config.h"
 
@@ -10,7 +10,7 @@ uint corners_of(uint kind) { return kind == RASTER_SEGMENTS ? 2u : kind == RASTE
 
 // Where the vertices of a list begin: each list has room for a whole batch. RASTER_KINDS: where all lists end.
 uint first_vertex(uint kind) {
-    return RASTER_KINDS * RASTER_COMMAND_WORDS + kind * 3u * VOXEL_BATCH_TRIANGLES;
+    return RASTER_KINDS + kind * 3u * VOXEL_BATCH_TRIANGLES;
 }
 
 uint triangle_place(uint kind, uint primitive) {

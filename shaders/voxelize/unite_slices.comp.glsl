@@ -14,6 +14,7 @@ uniform ivec3 tile_place;  // voxels from the region's low corner; x is a multip
 uniform ivec3 tile_size;
 uniform int axis;  // 1 or 2, where not along x
 uniform int layer;
+uniform int tall;  // the layer of x has y downwards, not z
 uniform int first_slice;
 
 void unite(ivec3 place, uint bits) {
@@ -30,7 +31,7 @@ void unite_texel(ivec2 texel) {
         const int x = first_slice + 32 * channel;
         const int left = clamp(tile_size.x - x, 0, 32);
         const uint inside = left == 32 ? 0xFFFFFFFFu : (1u << uint(left)) - 1u;
-        if (left > 0) unite(ivec3(x, texel), bits[channel] & inside);
+        if (left > 0) unite(tall != 0 ? ivec3(x, texel.yx) : ivec3(x, texel), bits[channel] & inside);
     }
 }
 
@@ -74,8 +75,13 @@ void unite_texels(int word, int other) {
 
 void main() {
     const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP);
-    const int across = ALONG_X != 0 ? tile_size.y : (tile_size.x + 31) >> 5;
-    const int down = ALONG_X == 0 && axis == 2 ? tile_size.y : tile_size.z;
+#if ALONG_X
+    const int across = tall != 0 ? tile_size.z : tile_size.y;
+    const int down = tall != 0 ? tile_size.y : tile_size.z;
+#else
+    const int across = (tile_size.x + 31) >> 5;
+    const int down = axis == 2 ? tile_size.y : tile_size.z;
+#endif
     if (thread >= across * down) return;
 #if ALONG_X
     unite_texel(ivec2(thread % across, thread / across));
