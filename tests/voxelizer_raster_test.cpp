@@ -1,6 +1,8 @@
 // The raster methods on hand-made primitives: bits in their places, tiles, masks, lines, points, state.
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -60,37 +62,44 @@ TEST_F(RasterTest, EveryMethodHasAName) {
     EXPECT_EQ(name_of(Method::three_axis), "three-axis");
 }
 
-TEST_F(RasterTest, EverySliceIsInItsWordAndBit) {
-    for (const int size : {1, 31, 32, 33, 127, 128, 129, 200, 1025}) {
-        const int level = int(std::bit_width(unsigned(size - 1)));
-        const std::int64_t side = N >> level;
-        for (int axis = 0; axis < 3; ++axis) {
-            Region region{level, glm::ivec3(0), glm::ivec3(2)};
-            region.size[axis] = size;
-            std::vector<LatticeTriangle> walls;
-            BitGrid expected(region.size);
-            for (int slice = 0; slice < size; ++slice) {
-                const bool at_an_edge = slice % 32 == 0 || slice % 32 == 31 || slice == size - 1;
-                if (!at_an_edge && slice % 7 != 0) continue;
-                for (const LatticeTriangle& t : wall(axis, slice * side + side / 2))
-                    walls.push_back(t);
-                for (int i = 0; i < 4; ++i) {
-                    glm::ivec3 v;
-                    v[axis] = slice;
-                    v[(axis + 1) % 3] = i % 2;
-                    v[(axis + 2) % 3] = i / 2;
-                    expected.set(v);
-                }
-            }
-            for (const Method method : methods) {
-                const BitGrid nothing(region.size);
-                const bool sees = axis == 2 || method != Method::slice_map;
-                EXPECT_TRUE(same_bits(voxelize(method, walls, region), sees ? expected : nothing))
-                    << name_of(method) << ", " << size << " slices along axis " << axis;
-            }
+class RasterSlices : public RasterTest, public ::testing::WithParamInterface<int> {};
+
+/// Walls in many slices, and the voxels that they fill: 2 x 2 a slice.
+BitGrid walls_in_slices(int axis, const Region& region, std::vector<LatticeTriangle>& walls) {
+    BitGrid expected(region.size);
+    const std::int64_t side = region.voxel_side();
+    const int size = region.size[axis];
+    for (int slice = 0; slice < size; ++slice) {
+        const bool at_an_edge = slice % 32 == 0 || slice % 32 == 31 || slice == size - 1;
+        if (!at_an_edge && slice % 7 != 0) continue;
+        for (const LatticeTriangle& t : wall(axis, slice * side + side / 2))
+            walls.push_back(t);
+        for (int i = 0; i < 4; ++i) {
+            glm::ivec3 v;
+            v[axis] = slice;
+            v[(axis + 1) % 3] = i % 2;
+            v[(axis + 2) % 3] = i / 2;
+            expected.set(v);
+        }
+    }
+    return expected;
+}
+
+TEST_P(RasterSlices, AreInTheirWordsAndBits) {
+    const int level = int(std::bit_width(unsigned(GetParam() - 1)));
+    for (int axis = 0; axis < 3; ++axis) {
+        Region region{level, glm::ivec3(0), glm::ivec3(2)};
+        region.size[axis] = GetParam();
+        std::vector<LatticeTriangle> walls;
+        const BitGrid expected = walls_in_slices(axis, region, walls);
+        for (const Method method : methods) {
+            const bool sees = axis == 2 || method != Method::slice_map;
+            EXPECT_TRUE(same_bits(voxelize(method, walls, region), sees ? expected : BitGrid(region.size)))
+                << name_of(method) << ", along axis " << axis;
         }
     }
 }
+INSTANTIATE_TEST_SUITE_P(Sizes, RasterSlices, ::testing::Values(1, 31, 32, 33, 127, 128, 129, 200, 1025));
 
 TEST_F(RasterTest, WallsParallelToZVanishInASliceMapAlone) {
     for (const int axis : {0, 1, 2}) {

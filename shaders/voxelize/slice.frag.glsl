@@ -58,10 +58,25 @@ ivec2 slice_range(vec2 place) {
     return ivec2(floor(clamp(depth, slice_limits.x, slice_limits.y)));
 }
 
+#if COVER
 // Bits 0 to count - 1 of a word, for counts from 0 to 32.
 uvec4 low_bits(ivec4 count) {
     return mix((uvec4(1u) << uvec4(count & 31)) - 1u, uvec4(0xFFFFFFFFu), equal(count, ivec4(32)));
 }
+
+// The part of a range of slices in a target.
+uvec4 slice_bits(ivec2 range, int target) {
+    const ivec4 first_slice = target * RASTER_TARGET_SLICES + ivec4(0, 32, 64, 96);
+    const uvec4 before = low_bits(clamp(range.x - first_slice, 0, 32));
+    return low_bits(clamp(range.y + 1 - first_slice, 0, 32)) & ~before;
+}
+#else
+// One slice, or none where the range is empty.
+uvec4 slice_bits(ivec2 range, int target) {
+    const uint bit = range.x <= range.y ? 1u << uint(range.x & 31) : 0u;
+    return mix(uvec4(0u), uvec4(bit), equal(ivec4(range.x >> 5), 4 * target + ivec4(0, 1, 2, 3)));
+}
+#endif
 
 #if MASKED
 // The texel under the pixel's centre, or at the nearest point of the primitive.
@@ -92,10 +107,5 @@ void main() {
     if (!is_shown(place)) range = ivec2(0, -1);
 #endif
     // Nothing is discarded: a word without bits changes nothing. Depths past the ends of the tile set no bit either.
-    const ivec2 ends = clamp(ivec2(range.x, range.y + 1), ivec2(0), ivec2(TARGETS * RASTER_TARGET_SLICES));
-    for (int target = 0; target < TARGETS; ++target) {
-        const ivec4 first_slice = target * RASTER_TARGET_SLICES + ivec4(0, 32, 64, 96);
-        const uvec4 before = low_bits(clamp(ends.x - first_slice, 0, 32));
-        slices[target] = low_bits(clamp(ends.y - first_slice, 0, 32)) & ~before;
-    }
+    for (int target = 0; target < TARGETS; ++target) slices[target] = slice_bits(range, target);
 }
