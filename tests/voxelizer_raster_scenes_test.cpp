@@ -1,4 +1,5 @@
 // The raster methods on whole scenes, against the exact reference: what each is known to miss and to add.
+#include <array>
 #include <map>
 #include <queue>
 
@@ -143,6 +144,68 @@ TEST_P(ClosedSurface, IsTightInThreeAxesAndHasHolesInASliceMap) {
 }
 INSTANTIATE_TEST_SUITE_P(Builtin, ClosedSurface,
                          ::testing::Values(SceneAt("builtin:knot", 96), SceneAt("builtin:spheres", 192)));
+
+/// The square x, y in [0, 1] at z = 0.55, in a grid over the unit cube, with an alpha texture of 4 x 4
+/// texels.
+Surface masked_sheet(const std::array<int, 16>& alphas, scenes::Wrap wrap, float repeats) {
+    scenes::Scene scene;
+    scenes::Image& image = scene.images.emplace_back();
+    image.width = 4;
+    image.height = 4;
+    for (const int alpha : alphas)
+        image.rgba.insert(image.rgba.end(), {255, 255, 255, std::uint8_t(alpha)});
+    scene.textures.push_back({0, wrap, wrap});
+    scenes::Material& material = scene.materials.emplace_back();
+    material.texture = 0;
+    material.alpha_mode = scenes::AlphaMode::mask;
+    material.alpha_cutoff = 128.0F / 255.0F;
+    scenes::Primitive primitive;
+    primitive.material = 0;
+    primitive.positions = {{0, 0, 0.55F}, {1, 0, 0.55F}, {1, 1, 0.55F}, {0, 1, 0.55F}};
+    primitive.texcoords = {{0, 0}, {repeats, 0}, {repeats, repeats}, {0, repeats}};
+    primitive.indices = {0, 1, 2, 0, 2, 3};
+    scenes::Snapshot snapshot;
+    snapshot.items.push_back({&primitive, primitive.positions, {}, glm::dmat4(1.0)});
+    return build_surface(scene, snapshot, {glm::dvec3(0.0), 1.0 / 32, glm::ivec3(32)});
+}
+
+class RasterMasks : public GlTest, public ::testing::WithParamInterface<LayerPath> {};
+
+TEST_P(RasterMasks, AreDecidedByTheTexelUnderThePixelsCentre) {
+    if (GetParam() == LayerPath::vertex_shader && !RasterVoxelizer::has_vertex_path()) GTEST_SKIP();
+    const std::array<int, 16> alphas = {255, 0, 0, 0, 0, 128, 0, 127, 0, 255, 0, 0, 0, 0, 200, 0};
+    for (const scenes::Wrap wrap :
+         {scenes::Wrap::repeat, scenes::Wrap::mirrored_repeat, scenes::Wrap::clamp_to_edge}) {
+        const Surface surface = masked_sheet(alphas, wrap, 2.0F);  // a texel is 4 x 4 voxels
+        BitGrid expected(glm::ivec3(32));
+        for (int y = 0; y < 32; ++y) {
+            for (int x = 0; x < 32; ++x) {
+                const auto texel = [&](int i) {
+                    if (wrap == scenes::Wrap::repeat) return i / 4 % 4;
+                    if (wrap == scenes::Wrap::mirrored_repeat) return i < 16 ? i / 4 : 7 - i / 4;
+                    return std::min(i / 4, 3);
+                };
+                if (alphas[std::size_t(texel(y) * 4 + texel(x))] >= 128) expected.set({x, y, 17});
+            }
+        }
+        for (const Method method : {Method::slice_map, Method::three_axis, Method::three_axis_conservative}) {
+            RasterVoxelizer voxelizer(method, {}, GetParam());
+            const BitGrid bits = voxelizer.voxelize(upload(surface), whole(surface.grid));
+            const std::string what = fmt::format("{}, wrap {}", name_of(method), int(wrap));
+            if (method != Method::three_axis_conservative) {
+                EXPECT_TRUE(same_bits(bits, expected)) << what;
+                continue;
+            }
+            // Along the diagonal a pixel's centre lies beside the triangle, and the nearest point of it
+            // decides.
+            EXPECT_EQ(reference::compare(bits, expected).missing, 0U) << what;
+            const BitGrid truth = reference::exact_voxels(surface, whole(surface.grid));
+            EXPECT_EQ(reference::compare(bits, truth).extra, 0U) << what;
+        }
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Paths, RasterMasks,
+                         ::testing::Values(LayerPath::geometry_shader, LayerPath::vertex_shader));
 
 class RasterContexts : public ::testing::Test {};
 

@@ -191,7 +191,7 @@ void RasterVoxelizer::unite(const Region& region, const RasterTile& tile) {
     for (int layer = 0; layer < directions(); ++layer) {
         const int axis = directions() == 1 ? 2 : layer;
         const int threads =
-            axis == 0 ? tile.size.y * tile.size.z : 32 * row_words * (axis == 1 ? tile.size.z : tile.size.y);
+            axis == 0 ? tile.size.y * tile.size.z : row_words * (axis == 1 ? tile.size.z : tile.size.y);
         const gl::Program& uniting = axis == 0 ? unite_along_x_ : unite_;
         uniting.set("region_size", region.size);
         uniting.set("tile_place", tile.place);

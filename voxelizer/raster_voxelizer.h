@@ -38,11 +38,16 @@ enum class LayerPath : std::uint8_t {
 /// It misses nothing; it marks voxels beside edges that touch the triangle in this projection and not in the
 /// others.
 ///
-/// All of them: segments and points are GL's lines and points (enlarged like triangles in the conservative
-/// one). Alpha masks are decided at the pixel's centre, so that even the conservative method can miss a voxel
-/// whose only visible texel lies elsewhere. A face in the region's far end belongs to the region's last
-/// voxel. Far triangles (Surface::far_triangles) are cut to the lattice's range first, to the nearest lattice
-/// point. Lines to points more than 2^16 voxels away bend by the driver's rounding.
+/// All of them: segments and points are GL's lines and points, which leave out the pixel that a line ends in
+/// (enlarged like triangles in the conservative one). Alpha masks are decided at the pixel's centre, or the
+/// triangle's nearest point, so that even the conservative method can miss a voxel whose only visible texel
+/// lies elsewhere. A face in the region's far end belongs to the region's last voxel. Far triangles
+/// (Surface::far_triangles) are cut to the lattice's range first, to the nearest lattice point. Lines to
+/// points more than 2^16 voxels away bend by the driver's rounding. What lies within a float's rounding of a
+/// boundary may fall to another side in another region.
+///
+/// Memory: targets of one bit a voxel and direction, at most RASTER_TARGET_MIB at a time, and 16 MiB of
+/// lists.
 class RasterVoxelizer final : public Voxelizer {
 public:
     /// @param method  one of the three above

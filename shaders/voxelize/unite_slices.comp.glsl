@@ -1,7 +1,7 @@
 // Joins a target of one direction with the bits of the region (Forest et al. 2009, section 2.2, Figure 3).
 //
-// One thread is one texel. Along x, a channel of it is a word of a row. Along y and z, 32 threads turn the 32 x 32 bits of
-// each channel of 32 texels in a row.
+// Along x, a channel of a texel is a word of a row: one thread is one texel. Along y and z, one thread takes 32 texels of a
+// row, whose bits in one slice are a word.
 // defines: ALONG_X=0
 // defines: ALONG_X=1
 #include "voxelize/bits.glsl"
@@ -36,47 +36,48 @@ void unite_texel(ivec2 texel) {
 }
 
 #else
-#define ROWS (VOXEL_GROUP / 32)
-shared uvec4 texels_of_row[VOXEL_GROUP];
-shared uint row_has_bits[ROWS];
+uvec4 column_bits(int word, int other, int column) {
+    const ivec2 texel = ivec2(32 * word + column, other);
+    return texel.x < tile_size.x ? texelFetch(target_slices, ivec3(texel, layer), 0) : uvec4(0u);
+}
 
-// Thread i of a row of 32 texels reads texel i, and writes the words of slices i of the four channels: the bits of 32
-// columns of voxels become words of 32 slices. All threads of a group come here.
-void unite_texels(int row, int word, int other, bool inside) {
-    const int i = int(gl_LocalInvocationID.x) & 31;
-    if (i == 0) row_has_bits[row] = 0u;
-    barrier();
-    const ivec2 texel = ivec2(32 * word + i, other);
-    const uvec4 own = inside && texel.x < tile_size.x ? texelFetch(target_slices, ivec3(texel, layer), 0) : uvec4(0u);
-    texels_of_row[gl_LocalInvocationID.x] = own;
-    if (own != uvec4(0u)) atomicOr(row_has_bits[row], 1u);
-    barrier();
-    if (row_has_bits[row] == 0u) return;
-    uvec4 columns = uvec4(0u);
-    for (int column = 0; column < 32; ++column) {
-        columns |= (texels_of_row[32 * row + column] >> uint(i) & 1u) << uint(column);
-    }
-    const int depth = axis == 1 ? tile_size.y : tile_size.z;
-    for (int channel = 0; channel < 4; ++channel) {
-        const int slice = first_slice + 32 * channel + i;
-        const ivec3 place = axis == 1 ? ivec3(32 * word, slice, other) : ivec3(32 * word, other, slice);
-        if (slice < depth) unite(place, columns[channel]);
+// Surfaces meet few of the slices in a row, so that reading the row again for each of them is cheaper than to hold 32
+// texels in private memory, which drivers unroll.
+void unite_texels(int word, int other) {
+    uvec4 met = uvec4(0u);
+    for (int column = 0; column < 32; ++column) met |= column_bits(word, other, column);
+    const int depth = (axis == 1 ? tile_size.y : tile_size.z) - first_slice;
+    while (met != uvec4(0u)) {
+        const ivec4 first = findLSB(met);
+        // Slices past the end of the tile hold no bits that count.
+        const bvec4 inside = lessThan(first + ivec4(0, 32, 64, 96), ivec4(depth));
+        met &= met - min(met, uvec4(1u));
+        uvec4 bits = uvec4(0u);
+        for (int column = 0; column < 32; ++column) {
+            bits |= (column_bits(word, other, column) >> uvec4(first & 31) & 1u) << uint(column);
+        }
+        for (int channel = 0; channel < 4; ++channel) {
+            const int slice = first_slice + 32 * channel + first[channel];
+            const ivec3 place = axis == 1 ? ivec3(32 * word, slice, other) : ivec3(32 * word, other, slice);
+            if (first[channel] >= 0 && inside[channel]) unite(place, bits[channel]);
+        }
     }
 }
 #endif
 
 void main() {
-    const int group = int(gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
+    const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP);
 #if ALONG_X
-    const int thread = group * VOXEL_GROUP + int(gl_LocalInvocationID.x);
     const int across = tall != 0 ? tile_size.z : tile_size.y;
     const int down = tall != 0 ? tile_size.y : tile_size.z;
-    if (thread < across * down) unite_texel(ivec2(thread % across, thread / across));
 #else
     const int across = (tile_size.x + 31) >> 5;
     const int down = axis == 2 ? tile_size.y : tile_size.z;
-    const int row = int(gl_LocalInvocationID.x) >> 5;
-    const int place = group * ROWS + row;
-    unite_texels(row, place % across, place / across, place < across * down);
+#endif
+    if (thread >= across * down) return;
+#if ALONG_X
+    unite_texel(ivec2(thread % across, thread / across));
+#else
+    unite_texels(thread % across, thread / across);
 #endif
 }
