@@ -14,13 +14,14 @@ std::uint32_t or_of_pairs(std::uint32_t word) {
     return (word | word >> 8) & 0x0000ffffU;
 }
 
-BitGrid half(const BitGrid& fine) {
-    BitGrid coarse((fine.size + 1) / 2);
+BitGrid half(const BitGrid& fine, Reduction reduction) {
+    BitGrid coarse(coarser_size(fine.size, reduction));
+    const int z_step = reduction == Reduction::xyz ? 2 : 1;
     const int fine_words = fine.words_per_row();
     for (int z = 0; z < fine.size.z; ++z) {
         for (int y = 0; y < fine.size.y; ++y) {
             const std::uint32_t* const in = &fine.words[fine.word_index(0, y, z)];
-            std::uint32_t* const out = &coarse.words[coarse.word_index(0, y / 2, z / 2)];
+            std::uint32_t* const out = &coarse.words[coarse.word_index(0, y / 2, z / z_step)];
             for (int w = 0; w < fine_words; ++w)
                 out[w / 2] |= or_of_pairs(in[w]) << (w % 2 * 16);
         }
@@ -37,11 +38,16 @@ std::uint64_t BitGrid::count() const {
     return sum;
 }
 
-BitmaskPyramid build_pyramid(BitGrid finest) {
+glm::ivec3 coarser_size(const glm::ivec3& size, Reduction reduction) {
+    const glm::ivec3 half_size = (size + 1) / 2;
+    return {half_size.x, half_size.y, reduction == Reduction::xyz ? half_size.z : size.z};
+}
+
+BitmaskPyramid build_pyramid(BitGrid finest, Reduction reduction) {
     std::vector<BitGrid> levels;
     levels.push_back(std::move(finest));
-    while (levels.back().size.x > 1 || levels.back().size.y > 1 || levels.back().size.z > 1) {
-        levels.push_back(half(levels.back()));
+    while (coarser_size(levels.back().size, reduction) != levels.back().size) {
+        levels.push_back(half(levels.back(), reduction));
     }
     return BitmaskPyramid(std::move(levels));
 }

@@ -34,8 +34,14 @@ struct BitGrid {
     [[nodiscard]] bool operator==(const BitGrid&) const = default;
 };
 
-/// One bit a voxel at every level, each level the OR of the finer one (Forest et al. 2009, section 2.3,
-/// Figure 4b). Level 0 is the finest; sizes halve, rounded up, until one voxel is left.
+/// Along which axes the levels of a pyramid halve (Forest et al. 2009, section 2.3, Figure 4).
+enum class Reduction : std::uint8_t {
+    xy,   ///< Figure 4a: every level keeps all slices of z, so that one look-up reads a column
+    xyz,  ///< Figure 4b: the standard octree
+};
+
+/// One bit a voxel at every level, each level the OR of the finer one (Forest et al. 2009, section 2.3).
+/// Level 0 is the finest; sizes halve along the axes of the reduction, rounded up, until all of these are 1.
 class BitmaskPyramid {
 public:
     BitmaskPyramid() = default;
@@ -49,6 +55,9 @@ private:
 };
 
 /// The pyramid computed on the CPU.
-[[nodiscard]] BitmaskPyramid build_pyramid(BitGrid finest);
+[[nodiscard]] BitmaskPyramid build_pyramid(BitGrid finest, Reduction reduction = Reduction::xyz);
+
+/// Size of the next coarser level: the same size when there is none.
+[[nodiscard]] glm::ivec3 coarser_size(const glm::ivec3& size, Reduction reduction);
 
 }  // namespace cairn::voxelizer

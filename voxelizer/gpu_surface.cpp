@@ -5,15 +5,19 @@
 
 namespace cairn::voxelizer {
 
+GpuSurfaceChunk upload_chunk(const SurfaceChunk& chunk) {
+    const std::size_t limit = gl::query_limits().shader_storage_bytes;
+    return {upload_array(chunk.positions, "surface positions", limit),
+            upload_array(chunk.triangles, "surface triangles", limit),
+            upload_array(chunk.attributes, "surface attributes", limit),
+            std::uint32_t(chunk.triangles.size())};
+}
+
 GpuSurface upload(const Surface& surface) {
     const std::size_t limit = gl::query_limits().shader_storage_bytes;
     GpuSurface out;
-    for (const SurfaceChunk& chunk : surface.chunks) {
-        out.chunks.push_back({upload_array(chunk.positions, "surface positions", limit),
-                              upload_array(chunk.triangles, "surface triangles", limit),
-                              upload_array(chunk.attributes, "surface attributes", limit),
-                              std::uint32_t(chunk.triangles.size())});
-    }
+    for (const SurfaceChunk& chunk : surface.chunks)
+        out.chunks.push_back(upload_chunk(chunk));
     out.far_triangles = surface.far_triangles;
     out.materials = upload_array(surface.materials, "surface materials", limit);
     out.texels = upload_array(surface.texels, "surface texels", limit);
@@ -22,10 +26,10 @@ GpuSurface upload(const Surface& surface) {
     return out;
 }
 
-void GpuSurface::bind(std::size_t chunk) const {
-    chunks[chunk].positions.bind_storage(SSBO_SURFACE_POSITIONS);
-    chunks[chunk].triangles.bind_storage(SSBO_SURFACE_TRIANGLES);
-    chunks[chunk].attributes.bind_storage(SSBO_SURFACE_ATTRIBUTES);
+void GpuSurface::bind(const GpuSurfaceChunk& chunk) const {
+    chunk.positions.bind_storage(SSBO_SURFACE_POSITIONS);
+    chunk.triangles.bind_storage(SSBO_SURFACE_TRIANGLES);
+    chunk.attributes.bind_storage(SSBO_SURFACE_ATTRIBUTES);
     materials.bind_storage(SSBO_SURFACE_MATERIALS);
     texels.bind_storage(SSBO_SURFACE_TEXELS);
 }

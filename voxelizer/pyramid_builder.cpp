@@ -42,13 +42,15 @@ PyramidBuilder::PyramidBuilder(const gl::ShaderSource& shaders)
       halve_(gl::build_compute(shaders, "voxelize/halve.comp.glsl", {{"WIDE", "0"}})),
       finest_(buffer_texture()) {}
 
-void PyramidBuilder::prepare(const glm::ivec3& size) {
-    const glm::ivec3 first = (size + 1) / 2;
-    if (!levels_.empty() && levels_.front().size == first) return;
+void PyramidBuilder::prepare(const glm::ivec3& size, Reduction reduction) {
+    if (size == finest_size_ && reduction == reduction_) return;
     levels_.clear();
-    for (glm::ivec3 fine = size; fine != glm::ivec3(1);) {
+    finest_size_ = size;
+    reduction_ = reduction;
+    glm::ivec3 half = coarser_size(size, reduction);
+    for (glm::ivec3 fine = size; fine != half; half = coarser_size(fine, reduction)) {
         Level level;
-        level.size = (fine + 1) / 2;
+        level.size = half;
         level.bits = gl::Buffer(std::max<std::size_t>(bit_bytes(level.size), 16), "voxel pyramid");
         level.texture = buffer_texture();
         show(level.texture, level.bits, level.size);
@@ -62,6 +64,7 @@ void PyramidBuilder::halve(const gl::TextureHandle& fine, const glm::ivec3& fine
     glBindTextureUnit(TEXTURE_HALVE_FINE, fine.id());
     coarse.bits.bind_storage(SSBO_HALVE_COARSE);
     program.set("fine_size", fine_size);
+    program.set("coarse_size", coarse.size);
     program.use();
     const int coarse_words = (coarse.size.x + 31) / 32;
     gl::dispatch_threads(
@@ -70,8 +73,8 @@ void PyramidBuilder::halve(const gl::TextureHandle& fine, const glm::ivec3& fine
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-BitmaskPyramid PyramidBuilder::build(const gl::Buffer& bits, const glm::ivec3& size) {
-    prepare(size);
+BitmaskPyramid PyramidBuilder::build(const gl::Buffer& bits, const glm::ivec3& size, Reduction reduction) {
+    prepare(size, reduction);
     show(finest_, bits, size);
     glFinish();
     const auto start = std::chrono::steady_clock::now();

@@ -16,7 +16,8 @@ public:
     explicit PyramidBuilder(const gl::ShaderSource& shaders);
 
     /// @param bits  BitGrid::words of the finest level, `size` voxels
-    [[nodiscard]] BitmaskPyramid build(const gl::Buffer& bits, const glm::ivec3& size);
+    [[nodiscard]] BitmaskPyramid build(const gl::Buffer& bits, const glm::ivec3& size,
+                                       Reduction reduction = Reduction::xyz);
 
     /// All coarser levels of the last call, without their read-back, by the wall clock.
     [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
@@ -28,13 +29,15 @@ private:
         gl::Buffer bits;
         gl::TextureHandle texture;
     };
-    void prepare(const glm::ivec3& size);
+    void prepare(const glm::ivec3& size, Reduction reduction);
     void halve(const gl::TextureHandle& fine, const glm::ivec3& fine_size, const Level& coarse);
 
     gl::Program halve_wide_;
     gl::Program halve_;
     gl::TextureHandle finest_;   ///< of the buffer that the last call was given
-    std::vector<Level> levels_;  ///< kept for the next pyramid of the same size
+    std::vector<Level> levels_;  ///< kept for the next pyramid of the same size and reduction
+    glm::ivec3 finest_size_{0};
+    Reduction reduction_ = Reduction::xyz;
     double last_milliseconds_ = 0.0;
 };
 

@@ -86,10 +86,12 @@ struct GpuSurface {
     bool has_mask = false;
 
     /// Binds SSBO_SURFACE_* for one chunk.
-    void bind(std::size_t chunk) const;
+    void bind(std::size_t chunk) const { bind(chunks[chunk]); }
+    void bind(const GpuSurfaceChunk& chunk) const;  ///< one of ours, or other triangles of our materials
     [[nodiscard]] std::size_t size_bytes() const;
 };
 
 [[nodiscard]] GpuSurface upload(const Surface& surface);
+[[nodiscard]] GpuSurfaceChunk upload_chunk(const SurfaceChunk& chunk);
 
 }  // namespace cairn::voxelizer

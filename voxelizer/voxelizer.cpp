@@ -11,12 +11,16 @@
 #include "base/error.h"
 #include "gl/limits.h"
 #include "voxelizer/conservative_voxelizer.h"
+#include "voxelizer/raster_voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {
 
-constexpr std::array<std::pair<Method, std::string_view>, 1> method_names = {
-    {{Method::conservative, "conservative"}}};
+constexpr std::array<std::pair<Method, std::string_view>, 4> method_names = {
+    {{Method::conservative, "conservative"},
+     {Method::slice_map, "slice-map"},
+     {Method::three_axis, "three-axis"},
+     {Method::three_axis_conservative, "three-axis-conservative"}}};
 
 void check_region(const Region& region) {
     if (region.level < 0 || region.level > LATTICE_BITS ||
@@ -73,6 +77,10 @@ std::unique_ptr<Voxelizer> make_voxelizer(Method method, const gl::ShaderSource&
     switch (method) {
         case Method::conservative:
             return std::make_unique<ConservativeVoxelizer>(shaders);
+        case Method::slice_map:
+        case Method::three_axis:
+        case Method::three_axis_conservative:
+            return std::make_unique<RasterVoxelizer>(method, shaders);
     }
     throw Error(Fault::internal, "make_voxelizer", "a method that is not one");
 }
@@ -122,9 +130,10 @@ const gl::Buffer& Voxelizer::voxelize_on_gpu(const GpuSurface& surface, const Re
 }
 
 BitmaskPyramid Voxelizer::voxelize_pyramid(const GpuSurface& surface, const Region& region,
-                                           std::optional<std::span<const std::uint32_t>> subset) {
+                                           std::optional<std::span<const std::uint32_t>> subset,
+                                           Reduction reduction) {
     mark_timed(surface, region, subset);
-    return pyramid_.build(bits_, region.size);
+    return pyramid_.build(bits_, region.size, reduction);
 }
 
 }  // namespace cairn::voxelizer

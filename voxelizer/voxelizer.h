@@ -18,7 +18,10 @@ namespace cairn::voxelizer {
 
 /// How voxels are found. Only `conservative` is exact; the others are Forest et al.'s, to compare with.
 enum class Method : std::uint8_t {
-    conservative,  ///< every voxel whose closed box meets a triangle: conservative_voxelizer.h
+    conservative,             ///< every voxel whose closed box meets a triangle: conservative_voxelizer.h
+    slice_map,                ///< rasterized along z: raster_voxelizer.h, as the next two
+    three_axis,               ///< rasterized along x, y and z
+    three_axis_conservative,  ///< the same with enlarged triangles
 };
 
 /// @throws Error  Fault::usage: there is no such method; says which there are.
@@ -54,7 +57,8 @@ public:
     /// The same with all coarser levels, both computed on the GPU.
     [[nodiscard]] BitmaskPyramid voxelize_pyramid(
         const GpuSurface& surface, const Region& region,
-        std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
+        std::optional<std::span<const std::uint32_t>> subset = std::nullopt,
+        Reduction reduction = Reduction::xyz);
 
     /// The voxelization alone of the last call (no upload, no read-back, no pyramid), from an idle driver to
     /// an idle driver by the wall clock: the timer queries of llvmpipe do not see compute work.

@@ -30,6 +30,9 @@
 #define SSBO_ATTRIBUTE_SUBSET 4  // triangles to list, when not all
 #define SSBO_ATTRIBUTE_SUMS 6    // ATTRIBUTE_SUM_WORDS an occupied voxel (shaders/voxelize/attribute_sums.glsl)
 #define SSBO_ATTRIBUTE_PAIRS 7   // which triangle touches which voxel (shaders/voxelize/attribute_pairs.glsl)
+#define SSBO_RASTER_LISTS 6  // primitives to rasterize (shaders/voxelize/raster_lists.glsl)
+#define TEXTURE_SLICES 0     // a target of the raster methods, when its slices are joined
+#define ATTRIBUTE_POSITION 0
 
 // The producer's own (beside the surface's 0 to 4).
 #define SSBO_BRICK_PAIRS 5    // BrickPair: which triangle touches which tile of the batch

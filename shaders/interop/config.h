@@ -47,6 +47,20 @@
 #define ATTRIBUTE_LEAST_WEIGHT 2.384185791015625e-7
 #define ATTRIBUTE_HIDDEN_WEIGHT 1.4551915228366851806640625e-11
 
+// The raster methods. A target holds one slice a bit of its four channels; eight of them are the most that any driver
+// draws to at once. More slices go in several passes.
+#define RASTER_TARGET_SLICES 128
+#define RASTER_TARGETS 8
+#define RASTER_TARGET_MIB 256  // all targets of a pass together
+// What is drawn, each kind with a list of its own: proper triangles, segments and points (also those that degenerate
+// triangles are), and triangles that reach so many voxels past a tile that the driver's clipping would bend them.
+#define RASTER_TRIANGLES 0
+#define RASTER_SEGMENTS 1
+#define RASTER_POINTS 2
+#define RASTER_FAR 3
+#define RASTER_KINDS 4
+#define RASTER_FAR_VOXELS 8192
+
 // Alpha masks (shaders/voxelize/alpha_mask.glsl, voxelizer/exact_mask.h). Texture coordinates are rounded to
 // 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a texel when a mask is read.
 #define TEXCOORD_UNITS 67108864.0

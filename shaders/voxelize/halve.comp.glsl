@@ -1,6 +1,6 @@
-// One thread is two words of the coarser level, side by side: each voxel the OR of 2 x 2 x 2 of the finer one (Forest et
-// al. 2009, 2.3). It reads through a buffer texture, four words at a time where rows allow it: software drivers load from
-// storage buffers lane by lane.
+// One thread is two words of the coarser level, side by side: each voxel the OR of 2 x 2 x 2 of the finer one, or of 2 x
+// 2 x 1 where all slices are kept (Forest et al. 2009, section 2.3, Figure 4). It reads through a buffer texture, four
+// words at a time where rows allow it: software drivers load from storage buffers lane by lane.
 // defines: WIDE=1
 // defines: WIDE=0
 #include "interop/bindings.h"
@@ -12,6 +12,7 @@ layout(binding = TEXTURE_HALVE_FINE) uniform usamplerBuffer fine_bits;  // WIDE:
 layout(std430, binding = SSBO_HALVE_COARSE) restrict writeonly buffer CoarseBits { uint coarse_bits[]; };
 
 uniform ivec3 fine_size;
+uniform ivec3 coarse_size;  // of equal z: all slices are kept
 
 // Four words of a row of the finer level.
 uvec4 fine_words(int row, int first) {
@@ -37,15 +38,15 @@ uvec4 or_of_pairs(uvec4 word) {
 }
 
 void main() {
-    const ivec3 coarse_size = (fine_size + 1) >> 1;
     const int coarse_words = (coarse_size.x + 31) >> 5;
     const int pairs = (coarse_words + 1) >> 1;
     const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
     if (thread >= uint(pairs * coarse_size.y * coarse_size.z)) return;
     const int coarse_row = int(thread) / pairs;
     const int pair = int(thread) % pairs;
-    const ivec2 low = 2 * ivec2(coarse_row % coarse_size.y, coarse_row / coarse_size.y);
-    const ivec2 high = min(low + 1, fine_size.yz - 1);
+    const ivec2 step = ivec2(2, coarse_size.z == fine_size.z ? 1 : 2);
+    const ivec2 low = step * ivec2(coarse_row % coarse_size.y, coarse_row / coarse_size.y);
+    const ivec2 high = min(low + step - 1, fine_size.yz - 1);
     const uvec4 words = fine_words(low.y * fine_size.y + low.x, 4 * pair) | fine_words(low.y * fine_size.y + high.x, 4 * pair) |
                         fine_words(high.y * fine_size.y + low.x, 4 * pair) | fine_words(high.y * fine_size.y + high.x, 4 * pair);
     const uvec4 halves = or_of_pairs(words);

@@ -1,0 +1,7 @@
+// Hands a vertex to project.geom.glsl.
+#include "interop/bindings.h"
+
+layout(location = ATTRIBUTE_POSITION) in ivec3 position;  // lattice units
+out ivec3 corner;
+
+void main() { corner = position; }

@@ -1,0 +1,111 @@
+// Sets the bits of the slices that a primitive meets in a column of voxels (Forest et al. 2009, section 2.2): the logic
+// operation OR gathers them in the targets, of RASTER_TARGET_SLICES slices each.
+// defines: COVER=0 MASKED=0 TARGETS=1
+// defines: COVER=0 MASKED=0 TARGETS=2
+// defines: COVER=0 MASKED=0 TARGETS=4
+// defines: COVER=0 MASKED=0 TARGETS=8
+// defines: COVER=0 MASKED=1 TARGETS=1
+// defines: COVER=0 MASKED=1 TARGETS=2
+// defines: COVER=0 MASKED=1 TARGETS=4
+// defines: COVER=0 MASKED=1 TARGETS=8
+// defines: COVER=1 MASKED=0 TARGETS=1
+// defines: COVER=1 MASKED=0 TARGETS=2
+// defines: COVER=1 MASKED=0 TARGETS=4
+// defines: COVER=1 MASKED=0 TARGETS=8
+// defines: COVER=1 MASKED=1 TARGETS=1
+// defines: COVER=1 MASKED=1 TARGETS=2
+// defines: COVER=1 MASKED=1 TARGETS=4
+// defines: COVER=1 MASKED=1 TARGETS=8
+#define VARYING in
+#include "interop/config.h"
+#include "voxelize/slice_inputs.glsl"
+#if MASKED
+#include "produce/surface_color.glsl"
+#include "voxelize/raster_lists.glsl"
+#include "voxelize/surface.glsl"
+#endif
+
+layout(location = 0) out uvec4 slices[TARGETS];
+
+uniform float tile_middle;
+uniform float half_pixel;
+uniform float slack;  // voxels: more than the rounding of a plane or a side inside the tile
+uniform uint kind;    // of the list
+
+#if COVER
+// Whether the pixel (its centre, where half_pixel is 0) touches the primitive, as far as this direction can tell.
+bool touches(vec2 place) {
+    const vec3 p = vec3(place, 1.0);
+    const float nearest = min(min(dot(slice_side_a, p), dot(slice_side_b, p)), dot(slice_side_c, p));
+    const float reach = half_pixel + slack;
+    return nearest >= -reach && all(greaterThanEqual(place, slice_box.xy - reach)) &&
+           all(lessThanEqual(place, slice_box.zw + reach));
+}
+#endif
+
+// First and last slice; empty where the last comes before the first.
+ivec2 slice_range(vec2 place) {
+    const float depth = dot(slice_plane, vec3(place, 1.0));
+#if COVER
+    if (half_pixel > 0.0) {
+        const float reach = half_pixel * (abs(slice_plane.x) + abs(slice_plane.y)) + slack;
+        const float low = max(depth - reach, slice_limits.x - slack);
+        const float high = min(depth + reach, slice_limits.y + slack);
+        // Voxels are closed: what lies between two slices touches both.
+        return ivec2(clamp(vec2(ceil(low) - 1.0, floor(high)), -1.0, float(TARGETS * RASTER_TARGET_SLICES)));
+    }
+#endif
+    return ivec2(floor(clamp(depth, slice_limits.x, slice_limits.y)));
+}
+
+#if COVER
+// Bits 0 to count - 1 of a word, for counts from 0 to 32.
+uvec4 low_bits(ivec4 count) {
+    return mix((uvec4(1u) << uvec4(count & 31)) - 1u, uvec4(0xFFFFFFFFu), equal(count, ivec4(32)));
+}
+
+// The part of a range of slices in a target.
+uvec4 slice_bits(ivec2 range, int target) {
+    const ivec4 first_slice = target * RASTER_TARGET_SLICES + ivec4(0, 32, 64, 96);
+    const uvec4 before = low_bits(clamp(range.x - first_slice, 0, 32));
+    return low_bits(clamp(range.y + 1 - first_slice, 0, 32)) & ~before;
+}
+#else
+// One slice, or none where the range is empty.
+uvec4 slice_bits(ivec2 range, int target) {
+    const uint bit = range.x <= range.y ? 1u << uint(range.x & 31) : 0u;
+    return mix(uvec4(0u), uvec4(bit), equal(ivec4(range.x >> 5), 4 * target + ivec4(0, 1, 2, 3)));
+}
+#endif
+
+#if MASKED
+// The texel under the pixel's centre, or at the nearest point of the primitive.
+bool is_shown(vec2 place) {
+    const uint triangle = raster_lists[triangle_place(kind, slice_primitive)];
+    const SurfaceMaterial material = surface_materials[surface_triangles[triangle].vertices_material.w];
+    if ((material.flags >> MATERIAL_MASK_BIT & 1u) == 0u) return true;
+    const uint corners = corners_of(kind);
+    const uint vertex = first_vertex(kind) + slice_primitive * corners;
+    SurfacePoint point;
+    point.vertices = uvec3(raster_lists[vertex], raster_lists[vertex + min(1u, corners - 1u)],
+                           raster_lists[vertex + corners - 1u]);
+    const float b = dot(slice_weight_b, vec3(place, 1.0)), c = dot(slice_weight_c, vec3(place, 1.0));
+    const vec3 weights = max(vec3(1.0 - b - c, b, c), 0.0);
+    point.weights = weights / (weights.x + weights.y + weights.z);
+    // The weights' sum is rounded, and the cutoff itself passes.
+    return alpha_at(point, material) * 1.00001 >= material.alpha_cutoff;
+}
+#endif
+
+void main() {
+    const vec2 place = gl_FragCoord.xy - tile_middle;
+    ivec2 range = slice_range(place);
+#if COVER
+    if (!touches(place)) range = ivec2(0, -1);
+#endif
+#if MASKED
+    if (!is_shown(place)) range = ivec2(0, -1);
+#endif
+    // Nothing is discarded: a word without bits changes nothing. Depths past the ends of the tile set no bit either.
+    for (int target = 0; target < TARGETS; ++target) slices[target] = slice_bits(range, target);
+}
