@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/progress.h"
 #include "app/report.h"
@@ -94,7 +95,9 @@ double compare_all(Voxelization& voxelization, TileComparison& comparison) {
 
 ExitCode run(const VoxelizationOptions& options) {
     Report report(options.common.report);
-    Voxelization voxelization(options, load_gridded(options), {.surface = true});
+    GriddedInput scene = load_gridded(options);
+    const Interrupt interrupt;
+    Voxelization voxelization(options, std::move(scene), {.surface = true});
     Stopwatch watch;
     TileComparison comparison(voxelization.surface(), voxelization.grid(), options.common.report.quiet);
     const double prepare_ms = watch.lap_ms();

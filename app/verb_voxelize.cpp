@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/progress.h"
 #include "app/report.h"
@@ -85,6 +86,7 @@ double voxelize(Voxelization& voxelization, voxelizer::VoxelWriter* writer, bool
 ExitCode run(const Options& options) {
     Report report(options.voxelization.common.report);
     GriddedInput scene = load_gridded(options.voxelization);
+    const Interrupt interrupt;  // before there is a file to clean up
     std::unique_ptr<voxelizer::VoxelWriter> writer;
     if (options.output) writer = make_writer(*options.output, scene.grid);
     Voxelization voxelization(options.voxelization, std::move(scene),

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/progress.h"
 

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "app/driver.h"
-#include "app/interrupt.h"
 #include "app/options.h"
 #include "app/report.h"
 #include "app/scene_input.h"
@@ -33,7 +32,7 @@ struct GriddedInput {
 /// @throws Error  when it cannot be loaded, or the options make no grid; before anything is written.
 [[nodiscard]] GriddedInput load_gridded(const VoxelizationOptions& options);
 
-/// Voxelizes a scene on the GPU, tile by tile. From its construction on Ctrl-C is answered by a clean end.
+/// Voxelizes a scene on the GPU, tile by tile.
 class Voxelization {
 public:
     struct Needs {
@@ -46,7 +45,7 @@ public:
     [[nodiscard]] const voxelizer::Grid& grid() const { return grid_; }
     [[nodiscard]] const voxelizer::Surface& surface() const { return *surface_; }
 
-    /// @throws Error (Fault::interrupted) on Ctrl-C; what `sink` throws.
+    /// @throws Error (Fault::interrupted) when an Interrupt was asked for; what `sink` throws.
     void run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress);
 
     /// What both verbs say: the grid, what is occupied, times and driver.
@@ -54,7 +53,6 @@ public:
 
 private:
     VoxelizationOptions options_;
-    Interrupt interrupt_;
     voxelizer::Grid grid_;
     double load_ms_ = 0.0;
     double surface_ms_ = 0.0;

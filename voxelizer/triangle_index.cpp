@@ -143,13 +143,27 @@ void TriangleIndex::gather(const Cell& cell, const Query& query, std::vector<std
     const glm::ivec3 from = glm::max(-((low - query.low_inside) >> child_shift) - 1, glm::ivec3(0));
     const glm::ivec3 to =
         glm::min((query.high_inside - low) >> child_shift, glm::ivec3((1 << options_.level_step) - 1));
-    const glm::ivec3 first = cell.position << options_.level_step;
+    std::vector<Cell> children;
+    std::size_t entries = 0;
     for (int z = from.z; z <= to.z; ++z) {
         for (int y = from.y; y <= to.y; ++y) {
-            for (int x = from.x; x <= to.x; ++x)
-                gather({cell.level + options_.level_step, first + glm::ivec3(x, y, z)}, query, out);
+            for (int x = from.x; x <= to.x; ++x) {
+                const Cell child{cell.level + options_.level_step,
+                                 (cell.position << options_.level_step) + glm::ivec3(x, y, z)};
+                const Node* const found = find(child);
+                if (found == nullptr) continue;
+                entries += found->triangles.size();
+                children.push_back(child);
+            }
         }
     }
+    // Large triangles stand in all of them: then this one list is shorter.
+    if (entries >= node->triangles.size()) {
+        gather_listed(cell, *node, query, out);
+        return;
+    }
+    for (const Cell& child : children)
+        gather(child, query, out);
 }
 
 /// A triangle may stand in the lists of many cells. It is taken from the one that holds the low corner of the
