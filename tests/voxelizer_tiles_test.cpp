@@ -69,9 +69,9 @@ protected:
         for (const std::size_t region_bytes : {0, 1 << 15, 1 << 17, 1 << 24}) {
             TriangleIndex index(surface);
             Collector collector(surface.grid);
-            last = voxelize_tiles(voxelizer(), on_gpu, index, surface.grid,
-                                  [&](VoxelTile&& tile) { collector.add(tile); }, {},
-                                  {.tile_side = side, .region_bytes = region_bytes});
+            last = voxelize_tiles(
+                voxelizer(), on_gpu, index, surface.grid, [&](VoxelTile&& tile) { collector.add(tile); }, {},
+                {.tile_side = side, .whole_bytes = region_bytes, .region_bytes = region_bytes});
             EXPECT_TRUE(same_bits(collector.whole, truth)) << what << ", region of " << region_bytes;
             EXPECT_EQ(last.occupied, truth.count()) << what;
             EXPECT_EQ(last.tiles, collector.tiles) << what;

@@ -47,7 +47,7 @@ public:
           options_(options) {}
 
     TileStatistics run() {
-        if (bit_bytes(resolution_) <= options_.region_bytes &&
+        if (bit_bytes(resolution_) <= options_.whole_bytes &&
             glm::all(glm::lessThanEqual(resolution_, glm::ivec3(VOXEL_REGION_SIDE)))) {
             report(0.0);
             mark({level_, glm::ivec3(0), resolution_}, std::nullopt);
