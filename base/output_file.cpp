@@ -33,6 +33,7 @@ OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
         file_ = std::fopen(temporary_.c_str(), "wbx");
     }
     if (file_ == nullptr) fail(path_, "cannot write", errno);
+    std::setvbuf(file_, nullptr, _IOFBF, 1U << 20);
 }
 
 OutputFile::~OutputFile() {

@@ -9,7 +9,10 @@
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "voxelizer/write_binvox.h"
 #include "voxelizer/write_npy.h"
+#include "voxelizer/write_vdb.h"
+#include "voxelizer/write_vox.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -19,7 +22,10 @@ struct Format {
     std::unique_ptr<VoxelWriter> (*make)(const std::filesystem::path&, const Grid&);
 };
 
-constexpr std::array<Format, 1> formats = {{{".npy", make_npy_writer}}};
+constexpr std::array<Format, 4> formats = {{{".npy", make_npy_writer},
+                                            {".vdb", make_vdb_writer},
+                                            {".binvox", make_binvox_writer},
+                                            {".vox", make_vox_writer}}};
 
 }  // namespace
 

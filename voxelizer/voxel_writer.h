@@ -27,8 +27,8 @@ struct VoxelTile {
 
 /// Writes the voxels of one grid to one file.
 ///
-/// Tiles come in ascending order of origin.x, then z, then y; each at most once; those without voxels need not
-/// come. What was added is in the file, whole, after finish(); without it nothing stays behind.
+/// Tiles come in ascending order of origin.x, then z, then y; each at most once; those without voxels need
+/// not come. What was added is in the file, whole, after finish(); without it nothing stays behind.
 class VoxelWriter {
 public:
     virtual ~VoxelWriter() = default;

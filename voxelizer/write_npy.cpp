@@ -1,15 +1,13 @@
 #include "voxelizer/write_npy.h"
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "base/output_file.h"
+#include "voxelizer/voxel_rows.h"
 #include "voxelizer/voxel_tiles.h"
 
 namespace cairn::voxelizer {
@@ -29,20 +27,6 @@ std::string header(const glm::ivec3& size) {
     return text + dictionary;
 }
 
-/// Rows of bits run along x, rows of the file along z: 32 x 32 voxels of one y, word i with bit j, become
-/// word j with bit i. By halves: Warren, Hacker's Delight, section 7-3.
-using Block = std::array<std::uint32_t, 32>;
-void transpose(Block& block) {
-    std::uint32_t mask = 0x0000FFFF;
-    for (unsigned half = 16; half != 0; half >>= 1, mask ^= mask << half) {
-        for (unsigned i = 0; i < 32; i = (i + half + 1) & ~half) {
-            const std::uint32_t swapped = (block[i] >> half ^ block[i + half]) & mask;
-            block[i + half] ^= swapped;
-            block[i] ^= swapped << half;
-        }
-    }
-}
-
 /// Eight bits as eight bytes, the lowest first in memory.
 const std::array<std::array<std::uint8_t, 8>, 256> bytes_of_bits = [] {
     std::array<std::array<std::uint8_t, 8>, 256> table{};
@@ -52,123 +36,39 @@ const std::array<std::array<std::uint8_t, 8>, 256> bytes_of_bits = [] {
     return table;
 }();
 
-constexpr int blocks_a_side = VOXEL_TILE_SIDE / 32;
-constexpr std::uint16_t no_block = 0xFFFF;
-
-/// A tile with its rows along z; only blocks that are not empty are kept.
-struct TurnedTile {
-    explicit TurnedTile(const VoxelTile& tile);
-    [[nodiscard]] std::uint16_t number_of(int x_block, int y, int z_block) const {
-        return numbers[std::size_t((x_block * VOXEL_TILE_SIDE + y) * blocks_a_side + z_block)];
-    }
-
-    glm::ivec3 origin;
-    glm::ivec3 size;
-    std::vector<std::uint16_t> numbers;
-    std::vector<Block> blocks;
-};
-
-TurnedTile::TurnedTile(const VoxelTile& tile)
-    : origin(tile.origin),
-      size(tile.bits.size),
-      numbers(std::size_t(blocks_a_side * VOXEL_TILE_SIDE * blocks_a_side), no_block) {
-    for (int x_block = 0; x_block < tile.bits.words_per_row(); ++x_block) {
-        for (int y = 0; y < size.y; ++y) {
-            for (int z = 0; z < size.z; z += 32) {
-                Block block{};
-                std::uint32_t any = 0;
-                for (int i = 0; i < std::min(32, size.z - z); ++i) {
-                    block[std::size_t(i)] = tile.bits.words[tile.bits.word_index(32 * x_block, y, z + i)];
-                    any |= block[std::size_t(i)];
-                }
-                if (any == 0) continue;
-                transpose(block);
-                numbers[std::size_t((x_block * VOXEL_TILE_SIDE + y) * blocks_a_side + z / 32)] =
-                    std::uint16_t(blocks.size());
-                blocks.push_back(block);
-            }
-        }
-    }
-    blocks.shrink_to_fit();
-}
-
 class NpyWriter final : public VoxelWriter {
 public:
-    NpyWriter(const std::filesystem::path& path, const glm::ivec3& size) : file_(path), size_(size) {
+    NpyWriter(const std::filesystem::path& path, const glm::ivec3& size)
+        : file_(path),
+          rows_(size, 2),
+          bytes_((std::size_t(size.z) + 31) / 32 * 32),
+          row_bytes_(std::size_t(size.z)) {
         const std::string text = header(size);
         file_.write(text.data(), text.size());
     }
 
-    void add(const VoxelTile& tile) override {
-        if (tile.origin.x < slab_)
-            throw Error(Fault::internal, "npy writer", "a tile came after its slab was written");
-        while (slab_ < tile.origin.x)
-            write_slab();
-        tiles_.emplace_back(tile);
-    }
-
+    void add(const VoxelTile& tile) override { rows_.add(tile, *this); }
     void finish() override {
-        while (slab_ < size_.x)
-            write_slab();
+        rows_.finish(*this);
         file_.commit();
     }
 
+    void empty_rows(std::uint64_t count) { file_.write_zeros(count * row_bytes_); }
+    void row(std::span<const std::uint32_t> words) {
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            for (std::size_t byte = 0; byte < 4; ++byte)
+                std::memcpy(&bytes_[32 * i + 8 * byte], bytes_of_bits[words[i] >> 8 * byte & 0xFFU].data(),
+                            8);
+        }
+        file_.write(bytes_.data(), row_bytes_);
+    }
+
 private:
-    void write_slab();
-    void write_band(int x, std::span<const TurnedTile> tiles);
-
     OutputFile file_;
-    glm::ivec3 size_;
-    int slab_ = 0;  ///< x of the slab that is gathered
-    std::vector<TurnedTile> tiles_;
-    std::vector<std::uint8_t> band_;  ///< of one x: rows of as many y as a tile has
+    VoxelRows rows_;
+    std::vector<std::uint8_t> bytes_;
+    std::size_t row_bytes_;
 };
-
-void NpyWriter::write_slab() {
-    std::ranges::sort(tiles_, {}, [](const TurnedTile& t) { return std::pair(t.origin.y, t.origin.z); });
-    const int end = std::min(slab_ + VOXEL_TILE_SIDE, size_.x);
-    for (int x = slab_; x < end; ++x) {
-        auto tile = tiles_.begin();
-        for (int y = 0; y < size_.y; y += VOXEL_TILE_SIDE) {
-            const auto first = tile;
-            while (tile != tiles_.end() && tile->origin.y == y)
-                ++tile;
-            band_.resize(std::size_t(std::min(VOXEL_TILE_SIDE, size_.y - y)) * std::size_t(size_.z));
-            if (first == tile)
-                file_.write_zeros(band_.size());
-            else
-                write_band(x - slab_, {first, tile});
-        }
-    }
-    tiles_.clear();
-    slab_ = end;
-}
-
-void NpyWriter::write_band(int x, std::span<const TurnedTile> tiles) {
-    std::ranges::fill(band_, std::uint8_t(0));
-    bool any = false;
-    for (const TurnedTile& tile : tiles) {
-        for (int y = 0; y < tile.size.y; ++y) {
-            for (int z = 0; z < tile.size.z; z += 32) {
-                const std::uint16_t number = tile.number_of(x / 32, y, z / 32);
-                if (number == no_block) continue;
-                const std::uint32_t bits = tile.blocks[number][std::size_t(x % 32)];
-                if (bits == 0) continue;
-                any = true;
-                std::array<std::array<std::uint8_t, 8>, 4> bytes;
-                for (std::size_t i = 0; i < 4; ++i)
-                    bytes[i] = bytes_of_bits[bits >> 8 * i & 0xFFU];
-                std::uint8_t* const row = &band_[std::size_t(y) * std::size_t(size_.z)];
-                std::memcpy(row + tile.origin.z + z, bytes.data(),
-                            std::size_t(std::min(32, tile.size.z - z)));
-            }
-        }
-    }
-    if (any)
-        file_.write(band_.data(), band_.size());
-    else
-        file_.write_zeros(band_.size());
-}
 
 }  // namespace
 

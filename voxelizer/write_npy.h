@@ -12,9 +12,7 @@ namespace cairn::voxelizer {
 /// Writes NumPy's .npy, version 1: uint8, shape = the grid's resolution, C order, so a[x, y, z]; 1 =
 /// occupied. The file says nothing of the world, nor of attributes.
 ///
-/// Long runs of empty voxels are holes in the file where the file system can have them. Memory: of one slab
-/// of tiles along x, 128 bytes for each 32 x 1 x 32 voxels that are not empty, and 4 KiB a tile; and
-/// VOXEL_TILE_SIDE rows of the file.
+/// Long runs of empty voxels are holes in the file where the file system can have them. Memory: VoxelRows'.
 [[nodiscard]] std::unique_ptr<VoxelWriter> make_npy_writer(const std::filesystem::path& path,
                                                            const Grid& grid);
 

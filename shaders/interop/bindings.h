@@ -17,6 +17,12 @@
 #define SSBO_HALVE_FINE 0    // BitGrid::words of a level, and of the next coarser one (pass that reads no surface)
 #define SSBO_HALVE_COARSE 1
 
+// Attributes of voxels: the pass that lists pairs reads of the surface only 0, 1 and 3, the one that gathers reads all.
+#define SSBO_ATTRIBUTE_RANKS 2   // occupied voxels before every VOXEL_RANK_WORDS words of the bits
+#define SSBO_ATTRIBUTE_SUBSET 4  // triangles to list, when not all
+#define SSBO_ATTRIBUTE_SUMS 6    // ATTRIBUTE_SUM_WORDS an occupied voxel (shaders/voxelize/attribute_sums.glsl)
+#define SSBO_ATTRIBUTE_PAIRS 7   // which triangle touches which voxel (shaders/voxelize/attribute_pairs.glsl)
+
 // The producer's own (beside the surface's 0 to 4).
 #define SSBO_BRICK_PAIRS 5    // BrickPair: which triangle touches which tile of the batch
 #define SSBO_BRICK_TILES 6    // BrickTile: the tiles of the batch

@@ -32,6 +32,19 @@
 #define MASK_SURFACE 1
 #define MASK_UNDECIDED 2      // left to the CPU: too many steps, or vertex alphas under 1
 
+// Attributes of voxels (voxelizer/voxel_attributes.h).
+#define VOXEL_RANK_WORDS 8
+#define ATTRIBUTE_PAIRS 1048576         // at a time
+#define ATTRIBUTE_PART_VOXELS 1048576   // occupied voxels at a time
+#define ATTRIBUTE_SUM_WORDS 14
+#define ATTRIBUTE_SMALL_BOX 4096        // voxels of a triangle's box that one thread lists
+#define ATTRIBUTE_SAMPLE_ROWS 8         // a textured piece is cut in up to the square of this
+// Sums are multiples of 2^-44, up to 2^20 faces of a voxel. What has no area weighs 2^-22, and a piece on which no sample
+// passes the mask, nor a texel beside it, 2^-36.
+#define ATTRIBUTE_HIGH_UNIT 4096.0  // the high word of a sum counts 2^-12
+#define ATTRIBUTE_LEAST_WEIGHT 2.384185791015625e-7
+#define ATTRIBUTE_HIDDEN_WEIGHT 1.4551915228366851806640625e-11
+
 // Alpha masks (shaders/voxelize/alpha_mask.glsl, voxelizer/exact_mask.h). Texture coordinates are rounded to
 // 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a texel when a mask is read.
 #define TEXCOORD_UNITS 67108864.0

@@ -7,7 +7,7 @@
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_attributes.glsl"
-#include "produce/surface_color.glsl"
+#include "voxelize/surface_color.glsl"
 
 layout(local_size_x = 64) in;
 

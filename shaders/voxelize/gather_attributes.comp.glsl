@@ -1,0 +1,198 @@
+// A thread is one pair: it clips the triangle to the closed voxel (Sutherland and Hodgman 1974), samples base colour and
+// normal on the piece that is left, and adds them to the voxel's sums, weighted by area.
+//
+// The piece is found in the triangle's barycentric weights, where each side of the voxel is a line whose values at the
+// three vertices are whole numbers: large triangles lose no accuracy, and those without area still have a piece.
+// It is cut in a fan, and where a texture may vary on it, each triangle of the fan in `rows`^2 equal ones, about as small
+// as a texel: each is sampled at its centroid.
+// defines: HAS_MASK=0
+// defines: HAS_MASK=1
+#include "voxelize/attribute_pairs.glsl"
+#include "voxelize/attribute_sums.glsl"
+#include "voxelize/surface.glsl"
+#include "voxelize/surface_color.glsl"
+
+layout(local_size_x = VOXEL_GROUP) in;
+
+uniform ivec3 region_origin;
+uniform int voxel_shift;
+uniform uint count;
+
+// Lattice units: what counts as on a side. Weights are off by 2^-52, and distances to a side are under 2^26.
+const double ON_SIDE = 1.52587890625e-5LF;  // 2^-16
+
+#define MAX_CORNERS 9  // three, and one more for each side that cuts
+dvec2 corners[2 * MAX_CORNERS];  // weights of the second and third vertex; the piece lies in one half
+
+struct Piece {
+    int first;  // place in `corners`
+    int count;
+};
+
+int side_of(double value) { return int(value > ON_SIDE) - int(value < -ON_SIDE); }
+
+// `d`: how far inside a side of the voxel the three vertices lie.
+Piece clip(Piece piece, dvec3 d) {
+    Piece result = Piece(MAX_CORNERS - piece.first, 0);
+    dvec2 corner = corners[piece.first + piece.count - 1];
+    double value = d.x + corner.x * (d.y - d.x) + corner.y * (d.z - d.x);
+    for (int i = 0; i < piece.count; ++i) {
+        const dvec2 next = corners[piece.first + i];
+        const double next_value = d.x + next.x * (d.y - d.x) + next.y * (d.z - d.x);
+        const int side = side_of(value), next_side = side_of(next_value);
+        // Past MAX_CORNERS only rounding could lead.
+        if (side * next_side < 0 && result.count < MAX_CORNERS) {
+            const dvec2 cut = corner + (value / (value - next_value)) * (next - corner);
+            corners[result.first + result.count++] = cut;
+        }
+        if (next_side >= 0 && result.count < MAX_CORNERS) corners[result.first + result.count++] = next;
+        corner = next;
+        value = next_value;
+    }
+    return result;
+}
+
+Piece piece_in_voxel(ivec3 a, ivec3 b, ivec3 c, ivec3 voxel) {
+    const ivec3 low = voxel << voxel_shift;
+    const ivec3 high = low + (1 << voxel_shift);
+    corners[0] = dvec2(0.0LF);
+    corners[1] = dvec2(1.0LF, 0.0LF);
+    corners[2] = dvec2(0.0LF, 1.0LF);
+    Piece piece = Piece(0, 3);
+    for (int side = 0; side < 6; ++side) {
+        const int axis = side >> 1;
+        const ivec3 p = ivec3(a[axis], b[axis], c[axis]);
+        const ivec3 d = (side & 1) == 0 ? p - low[axis] : high[axis] - p;
+        if (any(lessThan(d, ivec3(0))) && piece.count > 0) piece = clip(piece, dvec3(d));
+    }
+    if (piece.count == 0) {  // by rounding: they do touch
+        corners[piece.first] = dvec2(1.0LF / 3.0LF);
+        piece.count = 1;
+    }
+    return piece;
+}
+
+SurfacePoint point_at(uvec3 vertices, dvec2 weights) {
+    return SurfacePoint(vertices, vec3(dvec3(1.0LF - weights.x - weights.y, weights)));
+}
+
+// So many rows of samples that they lie about a texel apart.
+int sample_rows(Piece piece, uvec3 vertices, SurfaceMaterial material) {
+    if (material.width == 0u) return 1;
+    vec2 low = vec2(1.0e30), high = vec2(-1.0e30);
+    for (int i = 0; i < piece.count; ++i) {
+        const vec2 uv = texcoord_at(point_at(vertices, corners[piece.first + i]));
+        low = min(low, uv);
+        high = max(high, uv);
+    }
+    const vec2 texels_across = (high - low) * vec2(material.width, material.height);
+    return int(clamp(ceil(max(texels_across.x, texels_across.y)), 1.0, float(ATTRIBUTE_SAMPLE_ROWS)));
+}
+
+// The centroid of part `number` of a triangle that is cut in rows^2 parts; rows run along the side from b to c. Row r has
+// r + 1 parts that point like the triangle, and r between them that point the other way.
+dvec2 centroid_of_part(dvec2 a, dvec2 b, dvec2 c, int number, int rows) {
+    int row = int(sqrt(float(number)));
+    row += int((row + 1) * (row + 1) <= number) - int(row * row > number);
+    const int place = number - row * row;
+    const bool turned = (place & 1) != 0;
+    const double along = double(row) + (turned ? 1.0LF : 2.0LF) / 3.0LF;
+    const double across = double(place >> 1) + (turned ? 2.0LF : 1.0LF) / 3.0LF;
+    return a + ((along - across) * (b - a) + across * (c - a)) / double(rows);
+}
+
+// Sums over samples.
+struct Gathered {
+    float weight;
+    vec3 color, normal;
+};
+
+void gather(inout Gathered sum, float weight, vec3 color, vec3 normal) {
+    sum.weight += weight;
+    sum.color += weight * color;
+    sum.normal += weight * normal;
+}
+
+#if HAS_MASK
+bool passes(float texel_alpha, float vertex_alpha, SurfaceMaterial material) {
+    return uint(round(texel_alpha * 255.0)) * uint(round(vertex_alpha * 255.0 * 256.0)) >= material.alpha_threshold;
+}
+
+// The colour at a sample that is cut away, for a piece that has no other: the voxel is occupied because the piece touches
+// a texel nearby that is not. `weight`: 1, or next to nothing when there is none.
+vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 own_color, out float weight) {
+    weight = 1.0e-6;
+    if (material.width == 0u) return own_color;
+    const vec4 vertex_color = vertex_color_at(p);
+    const vec2 uv = texcoord_at(p);
+    for (int i = 0; i < 9; ++i) {
+        const vec2 offset = vec2(i % 3 - 1, i / 3 - 1) / vec2(material.width, material.height);
+        const vec4 texel = nearest_texel(material, uv + offset);
+        if (!passes(texel.a, vertex_color.a, material)) continue;
+        weight = 1.0;
+        return material.base_color.rgb * vertex_color.rgb * linear_from_srgb(texel.rgb);
+    }
+    return own_color;
+}
+#endif
+
+// One sample, into `shown` or, where a mask cuts it away, into `hidden`.
+void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, SurfaceMaterial material, vec3 own_normal,
+                  float weight) {
+    const vec3 color = color_at(p, material);
+    const vec3 normal = normal_at(p, own_normal);
+#if HAS_MASK
+    if ((material.flags >> MATERIAL_MASK_BIT & 1u) != 0u) {
+        const float alpha = material.width != 0u ? nearest_texel(material, texcoord_at(p)).a : 1.0;
+        if (!passes(alpha, vertex_color_at(p).a, material)) {
+            float hidden_weight;
+            const vec3 nearby = color_nearby(p, material, color, hidden_weight);
+            gather(hidden, hidden_weight, nearby, normal);
+            return;
+        }
+    }
+#endif
+    gather(shown, weight, color, normal);
+}
+
+void main() {
+    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    if (thread >= count) return;
+    const uvec4 pair = pairs[thread];
+    const ivec3 voxel = region_origin + ivec3(pair.x & 0xFFFFu, pair.x >> 16, pair.y);
+    const uvec4 triangle = surface_triangles[pair.w].vertices_material;
+    const SurfaceMaterial material = surface_materials[triangle.w];
+    const ivec3 a = surface_position(triangle.x), b = surface_position(triangle.y), c = surface_position(triangle.z);
+    const Piece piece = piece_in_voxel(a, b, c, voxel);
+
+    const dvec3 cross_product = cross(dvec3(b - a), dvec3(c - a));
+    const double twice_area = length(cross_product);
+    const vec3 own_normal = twice_area > 0.0LF ? vec3(cross_product / twice_area) : vec3(0.0);
+    const double side = double(1 << voxel_shift);
+    const int rows = sample_rows(piece, triangle.xyz, material);
+    const int parts = rows * rows;
+    const int fan = max(piece.count - 2, 1);
+
+    Gathered shown = Gathered(0.0, vec3(0.0), vec3(0.0));
+    Gathered hidden = shown;
+    const dvec2 first = corners[piece.first];
+    for (int i = 0; i < fan * parts; ++i) {
+        const int next = i / parts + 1;
+        const dvec2 p = corners[piece.first + min(next, piece.count - 1)];
+        const dvec2 q = corners[piece.first + min(next + 1, piece.count - 1)];
+        const double part_of_triangle = abs((p.x - first.x) * (q.y - first.y) - (p.y - first.y) * (q.x - first.x));
+        const double faces = 0.5LF * part_of_triangle * twice_area / (side * side * double(parts));
+        const dvec2 middle = centroid_of_part(first, p, q, i % parts, rows);
+        sample_point(shown, hidden, point_at(triangle.xyz, middle), material, own_normal, max(float(faces), 1.0e-20));
+    }
+    float weight = max(shown.weight, ATTRIBUTE_LEAST_WEIGHT);
+    if (shown.weight == 0.0) {
+        if (hidden.weight < 0.5) weight = ATTRIBUTE_HIDDEN_WEIGHT;
+        shown = hidden;
+    }
+    const float scale = weight / shown.weight;
+    const uint place = pair.z * uint(ATTRIBUTE_SUM_WORDS);
+    add_to_sum(place + SUM_WEIGHT, weight);
+    add_to_sums(place + SUM_COLOR, shown.color * scale);
+    add_to_sums(place + SUM_NORMAL, shown.normal * scale);
+}

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace cairn::voxelizer {
+
+/// 8 bits a channel, sRGB.
+[[nodiscard]] glm::u8vec3 srgb_from_linear(const glm::vec3& linear);
+
+/// Finds at most 255 colours for many. Up to 255 different ones are kept as they are; more are gathered in
+/// 64^3 cells of the sRGB cube, which are cut by their median (Heckbert 1982) and then moved to the means of
+/// what is nearest to them (Lloyd 1982). The same whatever order the colours come in. Memory: 8 MiB.
+class ColorPalette {
+public:
+    static constexpr std::size_t capacity = 255;
+
+    void add(const glm::u8vec3& color);
+    /// Once, after the last add().
+    void build();
+
+    [[nodiscard]] const std::vector<glm::u8vec3>& colors() const { return colors_; }
+    [[nodiscard]] std::uint8_t index_of(const glm::u8vec3& color) const;
+
+private:
+    struct Cell {
+        std::uint64_t count = 0;
+        std::array<std::uint64_t, 3> sums{};
+        [[nodiscard]] glm::dvec3 mean() const {
+            return glm::dvec3(sums[0], sums[1], sums[2]) / double(count);
+        }
+    };
+    using Cells = std::vector<std::uint32_t>;  ///< numbers of cells that are not empty
+
+    [[nodiscard]] static std::uint32_t cell_of(const glm::u8vec3& color);
+    [[nodiscard]] std::vector<Cells> cut_by_median() const;
+    [[nodiscard]] glm::dvec3 mean_of(const Cells& cells) const;
+    void move_to_means(const Cells& all);
+
+    std::map<std::uint32_t, std::uint8_t>
+        exact_;  ///< of 0xRRGGBB; one more than fits when there are too many
+    std::vector<Cell> cells_ = std::vector<Cell>(64 * 64 * 64);
+    std::vector<glm::u8vec3> colors_;
+    std::vector<std::uint8_t> index_of_cell_;
+};
+
+}  // namespace cairn::voxelizer
