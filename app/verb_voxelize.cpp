@@ -29,7 +29,7 @@ struct Options {
 
 void add_options(CLI::App& verb, Options& options) {
     add_output_option(verb, options.output, voxelizer::voxel_file_endings(),
-                      fmt::format("write the voxels, as the ending says: {};\n.npy holds uint8 of shape "
+                      fmt::format("write the voxels, as the ending says:\n{};\n.npy holds uint8 of shape "
                                   "(X, Y, Z), a[x, y, z],\n1 = occupied",
                                   fmt::join(voxelizer::voxel_file_endings(), ", ")));
     add_voxelization_options(verb, options.voxelization);

@@ -41,11 +41,24 @@ Voxelization::Voxelization(const VoxelizationOptions& options, GriddedInput scen
     upload_ms_ = watch.lap_ms();
     if (!needs.surface) surface_.reset();
     voxelizer_ = voxelizer::make_voxelizer(options.method, options.common.driver.shaders);
+    if (needs.attributes) attributes_.emplace(options.common.driver.shaders);
+}
+
+void Voxelization::add_attributes(voxelizer::VoxelTile& tile) {
+    if (!attributes_) return;
+    Stopwatch watch;
+    const voxelizer::Region region{grid_.level(), tile.origin, tile.bits.size};
+    tile.attributes = attributes_->gather(on_gpu_, region, tile.bits, index_->triangles_in(region));
+    attributes_ms_ += watch.lap_ms();
 }
 
 void Voxelization::run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress) {
     statistics_ = voxelizer::voxelize_tiles(
-        *voxelizer_, on_gpu_, *index_, grid_, sink,
+        *voxelizer_, on_gpu_, *index_, grid_,
+        [&](voxelizer::VoxelTile&& tile) {
+            add_attributes(tile);
+            sink(std::move(tile));
+        },
         [&progress](double share) { return !Interrupt::asked() && progress(share); }, {.warm_up = true});
     driver_->check();
 }
@@ -60,6 +73,7 @@ void Voxelization::report(Report& report) const {
     report.add("occupied", statistics_.occupied);
     report.add("milliseconds", statistics_.milliseconds);
     report.add("regions", statistics_.regions);
+    if (attributes_) report.add("attributes_ms", attributes_ms_);
     report.add("load_ms", load_ms_);
     report.add("surface_ms", surface_ms_);
     report.add("context_ms", context_ms_);

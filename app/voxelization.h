@@ -10,6 +10,7 @@
 #include "voxelizer/grid.h"
 #include "voxelizer/surface.h"
 #include "voxelizer/triangle_index.h"
+#include "voxelizer/voxel_attributes.h"
 #include "voxelizer/voxelize_tiles.h"
 #include "voxelizer/voxelizer.h"
 
@@ -36,7 +37,7 @@ struct GriddedInput {
 class Voxelization {
 public:
     struct Needs {
-        bool attributes = false;  ///< of the surface
+        bool attributes = false;  ///< tiles come with colours and normals
         bool surface = false;     ///< surface() when all is on the GPU
     };
     /// Frees the scene.
@@ -52,6 +53,8 @@ public:
     void report(Report& report) const;
 
 private:
+    void add_attributes(voxelizer::VoxelTile& tile);
+
     VoxelizationOptions options_;
     voxelizer::Grid grid_;
     double load_ms_ = 0.0;
@@ -64,6 +67,8 @@ private:
     std::optional<Driver> driver_;
     voxelizer::GpuSurface on_gpu_;
     std::unique_ptr<voxelizer::Voxelizer> voxelizer_;
+    std::optional<voxelizer::AttributeVoxelizer> attributes_;
+    double attributes_ms_ = 0.0;
     voxelizer::TileStatistics statistics_;
 };
 
