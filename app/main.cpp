@@ -18,7 +18,7 @@ std::string footer() {
     }
     text +=
         "\nExit codes: 0 done, 1 a comparison found a difference, 2 wrong usage, 3 bad input file,\n"
-        "4 no usable OpenGL 4.5 context, 5 out of memory.\n"
+        "4 no usable OpenGL 4.5 context, 5 out of memory, 130 interrupted.\n"
         "With CAIRN_GL_DEBUG in the environment, any error that OpenGL reports ends the work.\n"
         "\n\"cairn VERB --help\" lists what a verb takes.";
     return text;

@@ -1,6 +1,7 @@
 #include "app/options.h"
 
 #include <algorithm>
+#include <cctype>
 #include <functional>
 #include <vector>
 
@@ -14,16 +15,14 @@
 namespace cairn::app {
 namespace {
 
-/// Past this a cube of bits takes 8 GiB.
-constexpr int max_grid_resolution = 4096;
+/// A voxel is then 2^8 lattice units wide, which still tells where in it a vertex is.
+constexpr int max_grid_resolution = 65536;
 constexpr int max_scene_index = 1 << 20;
 constexpr const char* common_group = "Common options";
 
-/// A device or a pipe: it needs no ending, and opening it only to look would be felt at its other end.
-bool is_device(const std::filesystem::path& path) {
-    const std::filesystem::file_status there = std::filesystem::status(path);
-    return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
-           !std::filesystem::is_directory(there);
+std::string lower_case(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
 }
 
 gl::ContextKind context_named(const std::string& name) {
@@ -117,28 +116,62 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
 }
 
 void add_grid_options(CLI::App& verb, GridOptions& options) {
-    add_parsed_option(verb, "-r,--resolution", "N",
-                      fmt::format("voxels a side, 1 to {}", max_grid_resolution),
+    add_parsed_option(verb, "-r,--resolution", "N|X,Y,Z",
+                      fmt::format("voxels along each axis, 1 to {}: a cube, or three\ndifferent numbers",
+                                  max_grid_resolution),
                       [&options](const std::string& text) {
-                          options.resolution = parse_int("--resolution", text, 1, max_grid_resolution);
-                      })
-        ->required();
-    add_parsed_option(
-        verb, "--bounds", "X0,Y0,Z0,X1,Y1,Z1",
-        "the part of the world to cut into voxels: the cube at its\nlow corner, as wide as its longest side "
-        "(default: a cube\naround the scene)",
-        [&options](const std::string& text) { options.bounds = bounds_of(text); });
+                          options.resolution = parse_axes("--resolution", text, 1, max_grid_resolution);
+                      });
+    add_parsed_option(verb, "--voxel-size", "S",
+                      "the side of a voxel in world units, instead of -r: as\nmany voxels along each axis as "
+                      "that takes",
+                      [&options](const std::string& text) {
+                          options.voxel_size = parse_number("--voxel-size", text);
+                          if (*options.voxel_size <= 0.0)
+                              throw Error(Fault::usage, "--voxel-size",
+                                          fmt::format("\"{}\" is not above 0", text));
+                      });
+    add_parsed_option(verb, "--bounds", "X0,Y0,Z0,X1,Y1,Z1",
+                      "the part of the world to cut into voxels: the grid starts\nat its low corner and "
+                      "covers it along every "
+                      "axis (default:\nwhat leaves an empty voxel on each side of the scene,\ncentred)",
+                      [&options](const std::string& text) { options.bounds = bounds_of(text); });
+}
+
+void check_grid_options(const GridOptions& options) {
+    if (options.resolution && options.voxel_size) {
+        throw Error(Fault::usage, "--voxel-size", "cannot go with --resolution",
+                    "give the number of voxels or their size");
+    }
+    if (!options.resolution && !options.voxel_size) {
+        throw Error(Fault::usage, "", "--resolution or --voxel-size is required",
+                    "-r 256 makes a cube of 256 voxels a side");
+    }
+}
+
+voxelizer::Grid make_grid(const GridOptions& options, const scenes::Bounds& scene) {
+    if (options.resolution) {
+        return options.bounds ? voxelizer::grid_over(*options.bounds, *options.resolution)
+                              : voxelizer::grid_around(scene, *options.resolution);
+    }
+    return options.bounds
+               ? voxelizer::grid_of_voxels_over(*options.bounds, *options.voxel_size, max_grid_resolution)
+               : voxelizer::grid_of_voxels_around(scene, *options.voxel_size, max_grid_resolution);
+}
+
+bool is_device(const std::filesystem::path& path) {
+    const std::filesystem::file_status there = std::filesystem::status(path);
+    return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there) &&
+           !std::filesystem::is_directory(there);
 }
 
 CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,
-                               std::initializer_list<std::string_view> endings,
-                               const std::string& description) {
-    const std::vector<std::string_view> known(endings);
+                               const std::vector<std::string>& endings, const std::string& description) {
     return add_parsed_option(
-        verb, "-o,--output", "FILE", description, [&output, known](const std::string& text) {
+        verb, "-o,--output", "FILE", description, [&output, known = endings](const std::string& text) {
             const std::filesystem::path path(text);
             if (!is_device(path) &&
-                std::find(known.begin(), known.end(), path.extension().string()) == known.end()) {
+                std::ranges::find(known, lower_case(path.extension().string())) == known.end()) {
                 throw Error(Fault::usage, text.empty() ? "--output" : text,
                             fmt::format("no format ends in \"{}\"", path.extension().string()),
                             fmt::format("what this verb writes ends in {}", fmt::join(known, " or ")));

@@ -1,17 +1,17 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "gl/context.h"
 #include "gl/shader_source.h"
 #include "scenes/snapshot.h"
+#include "voxelizer/grid.h"
 
 /// What verbs have in common on the command line. An `add_...` function teaches options to a verb; they are
 /// stored where its second argument points when the command line has been read.
@@ -50,17 +50,23 @@ struct CommonOptions {
 };
 void add_common_options(CLI::App& verb, CommonOptions& options);
 
-/// Which voxels.
+/// Which voxels: exactly one of resolution and voxel_size, once check_grid_options has passed.
 struct GridOptions {
-    int resolution = 0;
+    std::optional<glm::ivec3> resolution;
+    std::optional<double> voxel_size;
     std::optional<scenes::Bounds> bounds;
 };
 void add_grid_options(CLI::App& verb, GridOptions& options);
+/// @throws Error (Fault::usage) when they do not say how fine the grid is, or say it twice.
+void check_grid_options(const GridOptions& options);
+[[nodiscard]] voxelizer::Grid make_grid(const GridOptions& options, const scenes::Bounds& scene);
 
 /// `-o FILE`, which must end in one of `endings` (".npy").
 CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,
-                               std::initializer_list<std::string_view> endings,
-                               const std::string& description);
+                               const std::vector<std::string>& endings, const std::string& description);
+
+/// A device or a pipe: it needs no ending, and opening it only to look would be felt at its other end.
+[[nodiscard]] bool is_device(const std::filesystem::path& path);
 
 /// Fails now, before any work, when a file cannot be written there. Leaves no trace.
 /// @throws Error (Fault::usage)

@@ -69,6 +69,19 @@ std::vector<double> parse_numbers(std::string_view option, std::string_view text
     return numbers;
 }
 
+glm::ivec3 parse_axes(std::string_view option, std::string_view text, int low, int high) {
+    const std::vector<std::string_view> parts = split(text, ',');
+    if (parts.size() != 1 && parts.size() != 3) {
+        throw Error(Fault::usage, std::string(option),
+                    fmt::format("\"{}\" has {} numbers, not 1 or 3", text, parts.size()),
+                    "write one for a cube, or three with commas and no spaces: 640,480,512");
+    }
+    glm::ivec3 axes(parse_int(option, parts[0], low, high));
+    for (int axis = 1; parts.size() == 3 && axis < 3; ++axis)
+        axes[axis] = parse_int(option, parts[std::size_t(axis)], low, high);
+    return axes;
+}
+
 std::pair<int, int> parse_size(std::string_view option, std::string_view text) {
     const std::vector<std::string_view> parts = split(text, 'x');
     if (parts.size() != 2) {

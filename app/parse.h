@@ -20,6 +20,9 @@ namespace cairn::app {
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view option, std::string_view text,
                                                 std::size_t least, std::size_t most);
 
+/// "512" or "640,480,512": one number for all three axes, or one for each; each within [low, high].
+[[nodiscard]] glm::ivec3 parse_axes(std::string_view option, std::string_view text, int low, int high);
+
 /// "640x480", each within [1, 16384].
 [[nodiscard]] std::pair<int, int> parse_size(std::string_view option, std::string_view text);
 

@@ -1,13 +1,10 @@
 #include "app/voxelization.h"
 
-#include <fmt/format.h>
+#include <utility>
 
-#include "app/driver.h"
+#include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/progress.h"
-#include "app/scene_input.h"
-#include "base/error.h"
-#include "voxelizer/voxelizer.h"
 
 namespace cairn::app {
 
@@ -21,50 +18,75 @@ void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options) {
     add_common_options(verb, options.common);
 }
 
-Voxelization voxelize_input(const VoxelizationOptions& options, Report& report) {
-    const bool quiet = options.common.report.quiet;
+GriddedInput load_gridded(const VoxelizationOptions& options) {
+    check_grid_options(options.grid);
     Stopwatch watch;
-    Voxelization out;
-    double load_ms = 0.0;
-    {
-        const SceneInput input = load_input(options.common.scene, quiet);
-        load_ms = watch.lap_ms();
-        const voxelizer::Grid grid =
-            options.grid.bounds ? voxelizer::grid_over(*options.grid.bounds, options.grid.resolution)
-                                : voxelizer::grid_around(input.snapshot.bounds, options.grid.resolution);
-        out.surface = voxelizer::build_surface(input.scene, input.snapshot, grid);
-    }
-    out.region = voxelizer::whole(out.surface.grid);
-    const double surface_ms = watch.lap_ms();
-
-    const Progress progress("voxelizing", quiet);
-    const Driver driver(options.common.driver);
-    const double context_ms = watch.lap_ms();
-    const voxelizer::GpuSurface on_gpu = voxelizer::upload(out.surface);
-    const double upload_ms = watch.lap_ms();
-    const std::unique_ptr<voxelizer::Voxelizer> voxelizer =
-        voxelizer::make_voxelizer(options.method, options.common.driver.shaders);
-    // Once for the driver, which compiles at the first use; once for the clock.
-    out.voxels = voxelizer->voxelize(on_gpu, out.region);
-    out.voxels = voxelizer->voxelize(on_gpu, out.region);
-    driver.check();
-
-    const voxelizer::Grid& grid = out.surface.grid;
-    report.add("scene", options.common.scene.scene);
-    report.add("triangles", out.surface.triangle_count);
-    report.add("resolution", grid.resolution.x);
-    report.add("origin", json_of(grid.origin));
-    report.add("voxel_size", grid.voxel_size);
-    report.add("method", std::string(voxelizer::name_of(options.method)));
-    report.add("occupied", out.voxels.count());
-    report.add("milliseconds", voxelizer->last_milliseconds());
-    report.add("load_ms", load_ms);
-    report.add("surface_ms", surface_ms);
-    report.add("context_ms", context_ms);
-    report.add("upload_ms", upload_ms);
-    report.add("driver", driver.name());
-    report.add("backend", driver.backend());
+    GriddedInput out{load_input(options.common.scene, options.common.report.quiet), {}, 0.0};
+    out.grid = make_grid(options.grid, out.input.snapshot.bounds);
+    out.load_ms = watch.lap_ms();
     return out;
+}
+
+Voxelization::Voxelization(const VoxelizationOptions& options, GriddedInput scene, const Needs& needs)
+    : options_(options), grid_(scene.grid), load_ms_(scene.load_ms) {
+    const Progress progress("preparing", options.common.report.quiet);
+    Stopwatch watch;
+    surface_ = voxelizer::build_surface(scene.input.scene, scene.input.snapshot, grid_,
+                                        {.attributes = needs.attributes});
+    scene.input = {};  // what follows needs the memory
+    triangle_count_ = surface_->triangle_count;
+    index_.emplace(*surface_);
+    surface_ms_ = watch.lap_ms();
+    driver_.emplace(options.common.driver);
+    context_ms_ = watch.lap_ms();
+    on_gpu_ = voxelizer::upload(*surface_);
+    upload_ms_ = watch.lap_ms();
+    if (!needs.surface) surface_.reset();
+    voxelizer_ = voxelizer::make_voxelizer(options.method, options.common.driver.shaders);
+    if (needs.attributes) attributes_.emplace(options.common.driver.shaders);
+}
+
+void Voxelization::add_attributes(voxelizer::VoxelTile& tile) {
+    if (!attributes_) return;
+    Stopwatch watch;
+    const voxelizer::Region region{grid_.level(), tile.origin, tile.bits.size};
+    tile.attributes = attributes_->gather(on_gpu_, region, tile.bits, index_->triangles_in(region));
+    attributes_ms_ += watch.lap_ms();
+}
+
+void Voxelization::run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress) {
+    statistics_ = voxelizer::voxelize_tiles(
+        *voxelizer_, on_gpu_, *index_, grid_,
+        [&](voxelizer::VoxelTile&& tile) {
+            add_attributes(tile);
+            sink(std::move(tile));
+        },
+        [&progress](double share) { return !Interrupt::asked() && progress(share); }, {.warm_up = true});
+    driver_->check();
+}
+
+void Voxelization::report(Report& report) const {
+    report.add("scene", options_.common.scene.scene);
+    report.add("triangles", triangle_count_);
+    report.add("resolution", resolution_of(grid_));
+    report.add("origin", json_of(grid_.origin));
+    report.add("voxel_size", grid_.voxel_size);
+    report.add("method", std::string(voxelizer::name_of(options_.method)));
+    report.add("occupied", statistics_.occupied);
+    report.add("milliseconds", statistics_.milliseconds);
+    report.add("regions", statistics_.regions);
+    if (attributes_) report.add("attributes_ms", attributes_ms_);
+    report.add("load_ms", load_ms_);
+    report.add("surface_ms", surface_ms_);
+    report.add("context_ms", context_ms_);
+    report.add("upload_ms", upload_ms_);
+    report.add("driver", driver_->name());
+    report.add("backend", driver_->backend());
+}
+
+Json resolution_of(const voxelizer::Grid& grid) {
+    const glm::ivec3& r = grid.resolution;
+    return r.x == r.y && r.y == r.z ? Json(r.x) : json_of(r);
 }
 
 }  // namespace cairn::app

@@ -1,12 +1,17 @@
 #pragma once
 
-#include <string>
+#include <memory>
+#include <optional>
 
+#include "app/driver.h"
 #include "app/options.h"
 #include "app/report.h"
-#include "voxelizer/bit_grid.h"
+#include "app/scene_input.h"
 #include "voxelizer/grid.h"
 #include "voxelizer/surface.h"
+#include "voxelizer/triangle_index.h"
+#include "voxelizer/voxel_attributes.h"
+#include "voxelizer/voxelize_tiles.h"
 #include "voxelizer/voxelizer.h"
 
 namespace cairn::app {
@@ -19,15 +24,55 @@ struct VoxelizationOptions {
 };
 void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options);
 
-/// A scene's voxels by the GPU, and the surface that they were made of.
-struct Voxelization {
-    voxelizer::Surface surface;
-    voxelizer::Region region;
-    voxelizer::BitGrid voxels;
+/// A scene, and the grid to cut it with.
+struct GriddedInput {
+    SceneInput input;
+    voxelizer::Grid grid;
+    double load_ms = 0.0;
+};
+/// @throws Error  when it cannot be loaded, or the options make no grid; before anything is written.
+[[nodiscard]] GriddedInput load_gridded(const VoxelizationOptions& options);
+
+/// Voxelizes a scene on the GPU, tile by tile.
+class Voxelization {
+public:
+    struct Needs {
+        bool attributes = false;  ///< tiles come with colours and normals
+        bool surface = false;     ///< surface() when all is on the GPU
+    };
+    /// Frees the scene.
+    Voxelization(const VoxelizationOptions& options, GriddedInput scene, const Needs& needs);
+
+    [[nodiscard]] const voxelizer::Grid& grid() const { return grid_; }
+    [[nodiscard]] const voxelizer::Surface& surface() const { return *surface_; }
+
+    /// @throws Error (Fault::interrupted) when an Interrupt was asked for; what `sink` throws.
+    void run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress);
+
+    /// What both verbs say: the grid, what is occupied, times and driver.
+    void report(Report& report) const;
+
+private:
+    void add_attributes(voxelizer::VoxelTile& tile);
+
+    VoxelizationOptions options_;
+    voxelizer::Grid grid_;
+    double load_ms_ = 0.0;
+    double surface_ms_ = 0.0;
+    double context_ms_ = 0.0;
+    double upload_ms_ = 0.0;
+    std::optional<voxelizer::Surface> surface_;
+    std::uint64_t triangle_count_ = 0;
+    std::optional<voxelizer::TriangleIndex> index_;
+    std::optional<Driver> driver_;
+    voxelizer::GpuSurface on_gpu_;
+    std::unique_ptr<voxelizer::Voxelizer> voxelizer_;
+    std::optional<voxelizer::AttributeVoxelizer> attributes_;
+    double attributes_ms_ = 0.0;
+    voxelizer::TileStatistics statistics_;
 };
 
-/// Loads and voxelizes, and adds to the report what both verbs say: the grid, what is occupied, times and
-/// driver. The scene and the driver are released on return.
-[[nodiscard]] Voxelization voxelize_input(const VoxelizationOptions& options, Report& report);
+/// "resolution": one number for a cube, else three.
+[[nodiscard]] Json resolution_of(const voxelizer::Grid& grid);
 
 }  // namespace cairn::app

@@ -8,11 +8,12 @@ namespace cairn {
 
 /// Whose fault it is. The command turns it into its exit code (app/exit_code.h).
 enum class Fault {
-    usage,     ///< the caller asked for something that cannot be
-    input,     ///< a file is damaged, missing or asks for what is not supported
-    context,   ///< no OpenGL 4.5 context, or the driver refused
-    memory,    ///< it does not fit
-    internal,  ///< a fault of Cairn itself; never expected
+    usage,        ///< the caller asked for something that cannot be
+    input,        ///< a file is damaged, missing or asks for what is not supported
+    context,      ///< no OpenGL 4.5 context, or the driver refused
+    memory,       ///< it does not fit
+    interrupted,  ///< the caller asked to stop
+    internal,     ///< a fault of Cairn itself; never expected
 };
 
 /// The one exception of the libraries: what went wrong, where, and a way out.

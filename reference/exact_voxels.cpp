@@ -191,12 +191,27 @@ private:
 
 }  // namespace
 
-BitGrid exact_voxels(const Surface& surface, const Region& region) {
-    const Triangles triangles(surface);
-    const Candidates candidates(triangles);
+struct ExactVoxels::Parts {
+    explicit Parts(const Surface& surface) : triangles(surface), candidates(triangles) {}
+
+    Triangles triangles;
+    Candidates candidates;
+};
+
+ExactVoxels::ExactVoxels(const Surface& surface) : parts_(std::make_unique<Parts>(surface)) {}
+ExactVoxels::~ExactVoxels() = default;
+
+BitGrid ExactVoxels::in(const Region& region) const {
+    const Triangles& triangles = parts_->triangles;
+    const Candidates& candidates = parts_->candidates;
     BitGrid bits(region.size);
     const glm::ivec3 cells = (region.size + cell_side - 1) / cell_side;
     const std::int64_t unit = region.voxel_side();
+    const glm::i64vec3 region_low = glm::i64vec3(region.origin) * unit;
+    if (triangles.near_count() == triangles.count() &&
+        candidates.near_box(region_low, region_low + glm::i64vec3(region.size) * unit).empty()) {
+        return bits;
+    }
     // Columns of cells along x share no word with others.
     tbb::parallel_for(0, cells.y * cells.z, [&](int column) {
         CellFiller filler(triangles, region, bits);
@@ -210,6 +225,10 @@ BitGrid exact_voxels(const Surface& surface, const Region& region) {
         }
     });
     return bits;
+}
+
+BitGrid exact_voxels(const Surface& surface, const Region& region) {
+    return ExactVoxels(surface).in(region);
 }
 
 Comparison compare(const BitGrid& ours, const BitGrid& truth) {

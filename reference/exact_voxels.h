@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -11,9 +12,25 @@
 
 namespace cairn::reference {
 
-/// The truth: every voxel of the region whose closed box meets a closed triangle of the surface, as the alpha
+/// The truth: every voxel of a region whose closed box meets a closed triangle of the surface, as the alpha
 /// masks leave it. Embree finds candidates, exact predicates in 128-bit integers decide; runs on all cores.
-/// @throws Error  Fault::memory when Embree cannot hold the triangles.
+class ExactVoxels {
+public:
+    /// Refers to the surface, which must outlive it.
+    /// @throws Error  Fault::memory when Embree cannot hold the triangles.
+    explicit ExactVoxels(const voxelizer::Surface& surface);
+    ExactVoxels(const ExactVoxels&) = delete;
+    ExactVoxels& operator=(const ExactVoxels&) = delete;
+    ~ExactVoxels();
+
+    [[nodiscard]] voxelizer::BitGrid in(const voxelizer::Region& region) const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+/// The same for one region alone.
 [[nodiscard]] voxelizer::BitGrid exact_voxels(const voxelizer::Surface& surface,
                                               const voxelizer::Region& region);
 

@@ -13,7 +13,7 @@
 #include "renderer/pool/tree.h"
 #include "renderer/produce/surface_oracle.h"
 #include "renderer/produce/surface_producer.h"
-#include "renderer/produce/triangle_lists.h"
+#include "renderer/produce/tile_lists.h"
 #include "shaders/interop/config.h"
 #include "voxelizer/conservative_voxelizer.h"
 #include "voxelizer/surface.h"
@@ -110,7 +110,7 @@ struct Renderer::Parts {
           grid(flat.grid),
           uniform_color(flat.uniform_color),
           surface(voxelizer::upload(flat)),
-          lists(shape, flat),
+          lists(tile_lists(shape, flat)),
           voxelizer(shaders),
           oracle(shape, surface, voxelizer, lists),
           producer(shape, surface, lists, shaders),
@@ -129,7 +129,7 @@ struct Renderer::Parts {
     voxelizer::Grid grid;
     glm::vec3 uniform_color;
     voxelizer::GpuSurface surface;
-    TriangleLists lists;
+    voxelizer::TriangleIndex lists;
     voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle;
     SurfaceProducer producer;

@@ -222,6 +222,81 @@ TEST(AppVoxelize, DefaultGridLeavesAVoxelFreeAroundTheScene) {
     EXPECT_EQ(figures["occupied"], occupied);
 }
 
+TEST(AppVoxelize, AResolutionForEachAxisMakesTheArrayOfThatShape) {
+    const ScratchFolder folder;
+    write_points(folder.file("points.gltf"), {0.5F, 3.5F, 299.5F, 39.5F, 129.5F, 0.5F});
+    const Json figures = cairn_json({"voxelize", folder.file("points.gltf"), "-r", "40,130,300", "--bounds",
+                                     "0,0,0,40,130,300", "-o", folder.file("points.npy")});
+    EXPECT_EQ(figures["resolution"], Json({40, 130, 300}));
+    EXPECT_EQ(figures["voxel_size"], 1.0);
+    const Npy npy(folder.file("points.npy"));
+    EXPECT_EQ(npy.shape, (std::vector<std::size_t>{40, 130, 300}));
+    EXPECT_EQ(std::count(npy.values.begin(), npy.values.end(), 1), 2);
+    EXPECT_EQ(npy.at(0, 3, 299), 1);
+    EXPECT_EQ(npy.at(39, 129, 0), 1);
+    // A cube by three numbers is a cube.
+    EXPECT_EQ(cairn_json({"voxelize", "builtin:knot", "-r", "20,20,20"})["resolution"], 20);
+    EXPECT_EQ(cairn_json({"voxelize", "builtin:knot", "-r", "20,20,20"})["occupied"],
+              cairn_json({"voxelize", "builtin:knot", "-r", "20"})["occupied"]);
+}
+
+TEST(AppVoxelize, EveryWayToSayTheGridIsExact) {
+    const std::vector<std::vector<std::string>> grids = {
+        {"-r", "70"},
+        {"-r", "130,30,64"},
+        {"--voxel-size", "0.05"},
+        {"-r", "50", "--bounds", "-.5,-1,-1,.5,1,2"},
+        {"-r", "10,20,131", "--bounds", "-.5,-1,-1,.5,1,2"},
+        {"--voxel-size", "0.031", "--bounds", "-.5,-1,-1,.5,1,2"}};
+    for (std::vector<std::string> run : grids) {
+        run.insert(run.begin(), {"check", "builtin:knot"});
+        const Json figures = cairn_json(run);
+        EXPECT_EQ(figures["missing"], 0) << run[2] << ' ' << run[3];
+        EXPECT_EQ(figures["extra"], 0) << run[2] << ' ' << run[3];
+        EXPECT_GT(figures["occupied"], 0) << run[2] << ' ' << run[3];
+    }
+}
+
+TEST(AppVoxelize, EveryFormatIsWrittenFromTheCommandLine) {
+    // Several tiles and regions, no cube; that the files are right is proved where they are written.
+    const ScratchFolder folder;
+    for (const std::string name : {"a.npy", "a.binvox", "a.vox", "a.vdb", "B.NPY"}) {
+        const std::vector<std::string> run = {"voxelize", "builtin:cornell", "-r",     "150,140,40",
+                                              "-o",       folder.file(name), "--json", "-"};
+        const Answer answer = cairn(run);
+        EXPECT_EQ(answer.code, 0) << answer;
+        EXPECT_GT(std::filesystem::file_size(folder.file(name)), 1000U) << name;
+        const bool has_attributes = name == "a.vox" || name == "a.vdb";
+        EXPECT_EQ(answer.json().contains("attributes_ms"), has_attributes) << answer;
+    }
+}
+
+TEST(AppVoxelize, VoxelSizeIsTheSizeAsked) {
+    const Json around = cairn_json({"voxelize", "builtin:cornell", "--voxel-size", "0.25"});
+    EXPECT_EQ(around["voxel_size"], 0.25);
+    EXPECT_EQ(around["resolution"].size(), 3U) << around;
+    const Json over =
+        cairn_json({"voxelize", "builtin:cornell", "--voxel-size", "0.5", "--bounds", "-1,-1,-1,1,1.1,0"});
+    EXPECT_EQ(over["voxel_size"], 0.5);
+    EXPECT_EQ(over["origin"], Json({-1.0, -1.0, -1.0}));
+    EXPECT_EQ(over["resolution"], Json({4, 5, 2}));
+}
+
+TEST(AppVoxelize, MemoryDoesNotGrowWithTheGrid) {
+    // The bits of 2048^3 voxels alone are 1 GiB.
+    const Json figures = cairn_json({"voxelize", "builtin:spheres", "-r", "2048"});
+    EXPECT_GT(figures["occupied"], 10'000'000);
+    EXPECT_GT(figures["regions"], 16);
+    EXPECT_LT(figures["peak_rss_bytes"], 640LL << 20);
+}
+
+TEST(AppCheck, OfSeveralRegionsFindsNoDifference) {
+    const Json figures = cairn_json({"check", "builtin:knot", "-r", "640", "--bounds", "-2,-2,-2,2,2,2"});
+    EXPECT_GT(figures["regions"], 1);
+    EXPECT_EQ(figures["missing"], 0);
+    EXPECT_EQ(figures["extra"], 0);
+}
+
 TEST(AppVoxelize, NegativeBoundsAreNoOption) {
     const Json figures = cairn_json({"voxelize", "builtin:knot", "-r", "16", "--bounds", "-.5,-1,-1,.5,1,2"});
     EXPECT_EQ(figures["origin"], Json({-0.5, -1.0, -1.0}));

@@ -1,14 +1,20 @@
 // The command's answers to right and wrong usage, to bad files, bad places and bad drivers.
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "tests/command.h"
 #include "tests/gltf_file.h"
@@ -99,7 +105,20 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Voxelize, AppWrongUsage,
-    ::testing::Values(Wrong{voxelize({}), "--resolution is required"},
+    ::testing::Values(Wrong{voxelize({}), "--resolution or --voxel-size is required"},
+                      Wrong{{"check", "builtin:cornell"}, "--resolution or --voxel-size is required"},
+                      Wrong{voxelize({"-r", "8", "--voxel-size", "1"}), "cannot go with --resolution"},
+                      Wrong{voxelize({"-r", "8,9"}), "has 2 numbers, not 1 or 3"},
+                      Wrong{voxelize({"-r", "8,9,10,11"}), "has 4 numbers, not 1 or 3"},
+                      Wrong{voxelize({"-r", "8,,10"}), "\"\" is not a whole number"},
+                      Wrong{voxelize({"-r", "8,9,0"}), "from 1 to 65536"},
+                      Wrong{voxelize({"-r", "8,9,65537"}), "from 1 to 65536"},
+                      Wrong{voxelize({"-r", "65537"}), "from 1 to 65536"},
+                      Wrong{voxelize({"--voxel-size", "0"}), "not above 0"},
+                      Wrong{voxelize({"--voxel-size", "-1"}), "not above 0"},
+                      Wrong{voxelize({"--voxel-size", "1m"}), "\"1m\" is not a number"},
+                      Wrong{voxelize({"--voxel-size", "1e-7"}), "more than 65536 along an axis"},
+                      Wrong{voxelize({"--voxel-size", "1e-7", "--bounds", "0,0,0,1,1,1"}), "would fit"},
                       Wrong{voxelize({"-r", "0"}), "from 1 to"}, Wrong{voxelize({"-r", "-5"}), "from 1 to"},
                       Wrong{voxelize({"-r", "16x"}), "\"16x\""}, Wrong{voxelize({"-r", "16.5"}), "\"16.5\""},
                       Wrong{voxelize({"-r", ""}), "--resolution"},
@@ -115,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "choose one of: conservative, slice-map, three-axis, three-axis-conservative"},
                       Wrong{voxelize({"-r", "8", "--context", "vulkan"}), "auto, osmesa or egl"},
                       Wrong{voxelize({"-r", "8", "--shader-dir", "/nowhere"}), "is not a folder"},
-                      Wrong{voxelize({"-r", "8", "-o", "voxels.vdb"}), "what this verb writes ends in .npy"},
+                      Wrong{voxelize({"-r", "8", "-o", "voxels.ply"}), "what this verb writes ends in .npy"},
                       Wrong{voxelize({"-r", "8", "-o", "voxels"}), ".npy"}));
 
 INSTANTIATE_TEST_SUITE_P(Render, AppWrongUsage,
@@ -223,10 +242,83 @@ TEST(AppOutput, APipeIsWrittenInPlace) {
 
 TEST(AppOutput, AFullDiskIsNoSuccess) {
     if (!std::filesystem::exists("/dev/full")) return;  // Linux has it
-    const Answer answer = cairn({"info", "builtin:cornell", "--quiet", "--json", "/dev/full"});
-    EXPECT_EQ(answer.code, 5) << answer;
-    expect_contains(answer.err, "No space left");
+    const ScratchFolder folder;
+    std::filesystem::create_symlink("/dev/full", folder.file("full.npy"));
+    for (const Arguments& arguments :
+         {Arguments{"info", "builtin:cornell", "--quiet", "--json", "/dev/full"},
+          Arguments{"voxelize", "builtin:cornell", "-r", "64", "-o", "/dev/full"},
+          Arguments{"voxelize", "builtin:cornell", "-r", "200,190,300", "-o", folder.file("full.npy")}}) {
+        const Answer answer = cairn(arguments);
+        expect_error(answer, 5, "No space left");
+    }
+    EXPECT_EQ(folder.file_count(), 1U) << "the link alone stays";
 }
+
+TEST(AppOutput, AnArrayThatTheDiskCannotHoldIsRefusedBeforeTheWork) {
+    const ScratchFolder folder;
+    const Answer answer =
+        cairn({"voxelize", "builtin:cornell", "-r", "65536", "-o", folder.file("huge.npy"), "--quiet"});
+    expect_error(answer, 5, "262144.0 GiB");
+    expect_contains(answer.err, "GiB are free");
+    expect_contains(answer.err, ".vdb");
+    EXPECT_EQ(folder.file_count(), 0U);
+}
+
+/// Starts `cairn ARGUMENTS...`, sends it a signal once its output has begun, and waits for its end.
+struct Interrupted {
+    Interrupted(const ScratchFolder& folder, Arguments arguments, int signal,
+                std::chrono::milliseconds after) {
+        arguments.insert(arguments.begin(), CAIRN_COMMAND);
+        std::vector<char*> argv;
+        for (std::string& argument : arguments)
+            argv.push_back(argument.data());
+        argv.push_back(nullptr);
+        const std::string err = folder.file("err");
+        const pid_t child = fork();
+        if (child == 0) {
+            const int file = open(err.c_str(), O_WRONLY | O_CREAT, 0600);
+            dup2(file, STDERR_FILENO);
+            execv(CAIRN_COMMAND, argv.data());
+            _exit(127);
+        }
+        const auto has_begun = [&] {
+            return std::ranges::any_of(
+                std::filesystem::directory_iterator(folder.path()),
+                [](const auto& entry) { return entry.path().string().find(".part-") != std::string::npos; });
+        };
+        // The command looks once whether it could write: wait for a file that stays.
+        int seen = 0;
+        for (int i = 0; i < 2000 && seen < 3; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            seen = has_begun() ? seen + 1 : 0;
+        }
+        EXPECT_GE(seen, 3) << "it never began to write";
+        std::this_thread::sleep_for(after);
+        kill(child, signal);
+        waitpid(child, &status, 0);
+        message = read_text(err);
+        std::filesystem::remove(err);
+    }
+    int status = 0;
+    std::string message;
+};
+
+class AppInterrupt : public ::testing::TestWithParam<int> {};
+
+TEST_P(AppInterrupt, EndsWithCode130OneLineAndNoFile) {
+    for (const int after_ms : {0, 400}) {
+        const ScratchFolder folder;
+        const Interrupted run(folder, {"voxelize", "builtin:tree", "-r", "1024", "-o", folder.file("a.npy")},
+                              GetParam(), std::chrono::milliseconds(after_ms));
+        ASSERT_TRUE(WIFEXITED(run.status)) << "killed by signal " << WTERMSIG(run.status);
+        EXPECT_EQ(WEXITSTATUS(run.status), 130) << run.message;
+        EXPECT_EQ(run.message, "error: interrupted; nothing was left half written\n");
+        EXPECT_EQ(folder.file_count(), 0U);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, AppInterrupt, ::testing::Values(SIGINT, SIGTERM),
+                         [](const auto& signal) { return signal.param == SIGINT ? "CtrlC" : "Terminate"; });
 
 /// Mesa that claims to know only OpenGL 3.3; Mesa also where another vendor's driver is installed beside it.
 const Surroundings old_driver = {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/produce/surface_oracle.h"
+#include "renderer/produce/tile_lists.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
 #include "voxelizer/conservative_voxelizer.h"
@@ -53,7 +54,7 @@ TEST_P(SurfaceOracleTest, MaskIsWhatADirectVoxelizationOfTheChildrenSays) {
     const TreeShape shape = make_tree_shape(GetParam().n, 16, GetParam().max_resolution);
     const voxelizer::Surface surface = random_surface(21);
     const voxelizer::GpuSurface uploaded = upload(surface);
-    TriangleLists lists(shape, surface);
+    voxelizer::TriangleIndex lists = tile_lists(shape, surface);
     voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle(shape, uploaded, voxelizer, lists);
     Random random(22);
@@ -76,7 +77,7 @@ TEST_P(SurfaceOracleTest, TileIsEmptyExactlyWhenAllItsChildrenAre) {
     const TreeShape shape = make_tree_shape(GetParam().n, 16, GetParam().max_resolution);
     const voxelizer::Surface surface = random_surface(23);
     const voxelizer::GpuSurface uploaded = upload(surface);
-    TriangleLists lists(shape, surface);
+    voxelizer::TriangleIndex lists = tile_lists(shape, surface);
     voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle(shape, uploaded, voxelizer, lists);
     Random random(24);
@@ -101,7 +102,7 @@ TEST_P(SurfaceOracleTest, FinestTilesHaveNoChildren) {
     const TreeShape shape = make_tree_shape(GetParam().n, 16, GetParam().max_resolution);
     const voxelizer::Surface surface = random_surface(25);
     const voxelizer::GpuSurface uploaded = upload(surface);
-    TriangleLists lists(shape, surface);
+    voxelizer::TriangleIndex lists = tile_lists(shape, surface);
     voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle(shape, uploaded, voxelizer, lists);
     Random random(26);
@@ -115,7 +116,7 @@ TEST_P(SurfaceOracleTest, EmptySurfaceHasEmptyTiles) {
     const TreeShape shape = make_tree_shape(GetParam().n, 16, GetParam().max_resolution);
     const voxelizer::Surface surface = lattice_surface({}, 4096);
     const voxelizer::GpuSurface uploaded = upload(surface);
-    TriangleLists lists(shape, surface);
+    voxelizer::TriangleIndex lists = tile_lists(shape, surface);
     voxelizer::ConservativeVoxelizer voxelizer;
     SurfaceOracle oracle(shape, uploaded, voxelizer, lists);
     EXPECT_EQ(oracle.child_mask({}), glm::uvec2(0));

@@ -1,5 +1,6 @@
 #include "tests/produced_brick.h"
 
+#include "renderer/produce/tile_lists.h"
 #include "shaders/interop/bindings.h"
 
 namespace cairn::test {
@@ -135,7 +136,7 @@ std::size_t slot_bytes(int m, bool has_color) {
 BrickMaker::BrickMaker(const renderer::TreeShape& shape, const voxelizer::Surface& surface, int slots)
     : shape_(shape),
       surface_(upload(surface)),
-      lists_(shape, surface),
+      lists_(renderer::tile_lists(shape, surface)),
       producer_(shape, surface_, lists_, {}),
       pool_(shape, surface.has_color, std::size_t(slots) * slot_bytes(shape.m, surface.has_color)) {}
 

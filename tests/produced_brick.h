@@ -62,7 +62,7 @@ public:
 private:
     renderer::TreeShape shape_;
     voxelizer::GpuSurface surface_;
-    renderer::TriangleLists lists_;
+    voxelizer::TriangleIndex lists_;
     renderer::SurfaceProducer producer_;
     renderer::BrickPool pool_;
 };

@@ -11,18 +11,47 @@
 namespace cairn::voxelizer {
 namespace {
 
-constexpr int max_resolution = 1 << LATTICE_BITS;
-
-void check_resolution(int resolution) {
-    if (resolution < 1 || resolution > max_resolution) {
-        throw Error(Fault::usage, "grid", fmt::format("a resolution of {} is out of range", resolution),
-                    fmt::format("choose 1 to {}", max_resolution));
+void check_resolution(const glm::ivec3& resolution) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (resolution[axis] < 1 || resolution[axis] > MAX_GRID_RESOLUTION) {
+            throw Error(Fault::usage, "grid",
+                        fmt::format("a resolution of {} is out of range", resolution[axis]),
+                        fmt::format("choose 1 to {}", MAX_GRID_RESOLUTION));
+        }
     }
 }
 
-double longest_axis(const scenes::Bounds& bounds) {
-    const glm::dvec3 size = bounds.high - bounds.low;
-    return std::max({size.x, size.y, size.z});
+/// The least voxel size at which `voxels` voxels hold the extent, along every axis.
+double least_voxel_size(const glm::dvec3& extent, const glm::dvec3& voxels) {
+    const glm::dvec3 sizes = extent / voxels;
+    return std::max({sizes.x, sizes.y, sizes.z});
+}
+
+void check_volume(const scenes::Bounds& bounds) {
+    const glm::dvec3 extent = bounds.empty() ? glm::dvec3(0.0) : bounds.high - bounds.low;
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    if (longest > 0.0 && std::isfinite(longest)) return;
+    throw Error(Fault::usage, "grid", "the bounds span no volume", "give a low corner under a high corner");
+}
+
+/// A little space beside whole voxels, so that the surface does not touch the border voxels even after its
+/// vertices are rounded: contact counts.
+constexpr double slack = 1.0 / 32;
+
+/// ceil(extent / voxel_size) + extra, within [1, limit].
+glm::ivec3 voxels_over(const glm::dvec3& extent, double voxel_size, double extra, int limit) {
+    if (!(voxel_size > 0.0) || !std::isfinite(voxel_size)) {
+        throw Error(Fault::usage, "voxel size", fmt::format("{} is not above 0", voxel_size));
+    }
+    // What a quotient of doubles may be off must not add a voxel: 1.1 / 0.1 is 11.000000000000002.
+    const glm::dvec3 voxels =
+        glm::max(glm::ceil(extent / voxel_size * (1.0 - 0x1p-40)) + extra, glm::dvec3(1.0));
+    if (glm::all(glm::lessThanEqual(voxels, glm::dvec3(limit)))) return voxels;
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    throw Error(Fault::usage, "voxel size",
+                fmt::format("voxels of {} make {:.0f} x {:.0f} x {:.0f}, more than {} along an axis",
+                            voxel_size, voxels.x, voxels.y, voxels.z, limit),
+                fmt::format("{:.4g} would fit", longest / (limit - extra - 1.0) * 1.001));
 }
 
 }  // namespace
@@ -59,26 +88,38 @@ glm::dvec3 Grid::world_from_lattice(const glm::dvec3& lattice) const {
     return origin + lattice * lattice_unit();
 }
 
-Grid grid_around(const scenes::Bounds& bounds, int resolution) {
+Grid grid_around(const scenes::Bounds& bounds, const glm::ivec3& resolution) {
     check_resolution(resolution);
-    if (bounds.empty()) return {glm::dvec3(0.0), 1.0 / resolution, glm::ivec3(resolution)};
+    const int longest = std::max({resolution.x, resolution.y, resolution.z});
+    if (bounds.empty()) return {glm::dvec3(0.0), 1.0 / longest, resolution};
     const glm::dvec3 centre = 0.5 * bounds.low + 0.5 * bounds.high;
-    const double extent = longest_axis(bounds);
-    // A little less than resolution - 2 voxels, so that the surface does not touch the border voxels even
-    // after its vertices are rounded: contact counts.
-    const double voxels = resolution < 3 ? resolution : resolution - 2 - 1.0 / 32;
-    const double voxel_size = extent > 0.0 ? extent / voxels : 1.0 / resolution;
-    return {centre - 0.5 * resolution * voxel_size, voxel_size, glm::ivec3(resolution)};
+    glm::dvec3 voxels(resolution);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (resolution[axis] >= 3) voxels[axis] -= 2.0 + slack;
+    }
+    const double least = least_voxel_size(bounds.high - bounds.low, voxels);
+    const double voxel_size = least > 0.0 ? least : 1.0 / longest;
+    return {centre - 0.5 * glm::dvec3(resolution) * voxel_size, voxel_size, resolution};
 }
 
-Grid grid_over(const scenes::Bounds& bounds, int resolution) {
+Grid grid_over(const scenes::Bounds& bounds, const glm::ivec3& resolution) {
     check_resolution(resolution);
-    const double extent = bounds.empty() ? 0.0 : longest_axis(bounds);
-    if (!(extent > 0.0) || !std::isfinite(extent)) {
-        throw Error(Fault::usage, "grid", "the bounds span no volume",
-                    "give a low corner under a high corner");
-    }
-    return {bounds.low, extent / resolution, glm::ivec3(resolution)};
+    check_volume(bounds);
+    return {bounds.low, least_voxel_size(bounds.high - bounds.low, glm::dvec3(resolution)), resolution};
+}
+
+Grid grid_of_voxels_around(const scenes::Bounds& bounds, double voxel_size, int limit) {
+    if (bounds.empty())
+        return {glm::dvec3(0.0), voxel_size, voxels_over(glm::dvec3(0.0), voxel_size, 1.0, limit)};
+    const glm::dvec3 extent = bounds.high - bounds.low;
+    const glm::ivec3 resolution = voxels_over(extent + slack * voxel_size, voxel_size, 2.0, limit);
+    const glm::dvec3 centre = 0.5 * bounds.low + 0.5 * bounds.high;
+    return {centre - 0.5 * glm::dvec3(resolution) * voxel_size, voxel_size, resolution};
+}
+
+Grid grid_of_voxels_over(const scenes::Bounds& bounds, double voxel_size, int limit) {
+    check_volume(bounds);
+    return {bounds.low, voxel_size, voxels_over(bounds.high - bounds.low, voxel_size, 0.0, limit)};
 }
 
 Region whole(const Grid& grid) {

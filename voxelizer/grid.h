@@ -34,13 +34,35 @@ struct Grid {
     [[nodiscard]] glm::dvec3 world_from_lattice(const glm::dvec3& lattice) const;
 };
 
-/// The default grid: a cube around the bounds, centred, with one empty voxel left on each side of the longest
-/// axis (none when resolution < 3). Empty bounds give a unit cube at the world's origin; a point, a cube of
-/// side 1 around it.
-[[nodiscard]] Grid grid_around(const scenes::Bounds& bounds, int resolution);
+/// The default grid: around the bounds, centred, with the least voxels that leave one empty on each side of
+/// every axis (none along an axis of resolution < 3). So a cube's longest axis decides. Empty bounds give a
+/// grid at the world's origin whose longest axis is 1; a point, such a grid around it.
+[[nodiscard]] Grid grid_around(const scenes::Bounds& bounds, const glm::ivec3& resolution);
+[[nodiscard]] inline Grid grid_around(const scenes::Bounds& bounds, int resolution) {
+    return grid_around(bounds, glm::ivec3(resolution));
+}
 
-/// A cubic grid of `resolution` over given bounds (`--bounds`): low corner kept, side = longest axis.
-[[nodiscard]] Grid grid_over(const scenes::Bounds& bounds, int resolution);
+/// A grid over given bounds (`--bounds`): low corner kept, with the least voxels that cover the bounds along
+/// every axis. So a cube's side is the longest axis.
+[[nodiscard]] Grid grid_over(const scenes::Bounds& bounds, const glm::ivec3& resolution);
+[[nodiscard]] inline Grid grid_over(const scenes::Bounds& bounds, int resolution) {
+    return grid_over(bounds, glm::ivec3(resolution));
+}
+
+constexpr int MAX_GRID_RESOLUTION = 1 << LATTICE_BITS;
+
+/// Voxels of a given size (`--voxel-size`), as many as it takes to leave one empty on each side of every
+/// axis; centred. Empty bounds give one voxel at the world's origin.
+/// @param voxel_size  world units, above 0
+/// @param limit       of voxels along an axis
+/// @throws Error      Fault::usage past the limit; says which size would fit.
+[[nodiscard]] Grid grid_of_voxels_around(const scenes::Bounds& bounds, double voxel_size,
+                                         int limit = MAX_GRID_RESOLUTION);
+
+/// The same over given bounds: low corner kept, no voxel left empty, so that parts of a world which are cut
+/// with one size meet without a seam.
+[[nodiscard]] Grid grid_of_voxels_over(const scenes::Bounds& bounds, double voxel_size,
+                                       int limit = MAX_GRID_RESOLUTION);
 
 /// A box of voxels at one level of a root cube: voxel side 2^(24 - level) lattice units, 2^level voxels
 /// across the cube. May reach outside the cube (a brick's border does).

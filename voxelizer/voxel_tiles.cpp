@@ -4,8 +4,8 @@
 
 namespace cairn::voxelizer {
 
-BitGrid tile_bits(const BitGrid& whole, const glm::ivec3& origin) {
-    BitGrid tile(glm::min(whole.size - origin, glm::ivec3(VOXEL_TILE_SIDE)));
+BitGrid tile_bits(const BitGrid& whole, const glm::ivec3& origin, int side) {
+    BitGrid tile(glm::min(whole.size - origin, glm::ivec3(side)));
     for (int z = 0; z < tile.size.z; ++z) {
         for (int y = 0; y < tile.size.y; ++y) {
             const std::size_t from = whole.word_index(origin.x, origin.y + y, origin.z + z);

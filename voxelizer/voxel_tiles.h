@@ -7,8 +7,8 @@
 
 namespace cairn::voxelizer {
 
-/// The part of a whole that is one tile. @param origin  a multiple of VOXEL_TILE_SIDE, inside.
-[[nodiscard]] BitGrid tile_bits(const BitGrid& whole, const glm::ivec3& origin);
+/// The part of a whole that is one tile. @param origin  a multiple of `side`, inside; that is one of 32.
+[[nodiscard]] BitGrid tile_bits(const BitGrid& whole, const glm::ivec3& origin, int side = VOXEL_TILE_SIDE);
 
 /// Gives a writer all tiles of a whole that hold voxels, without attributes, in the order that it wants.
 void add_tiles(VoxelWriter& writer, const BitGrid& whole);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "renderer/produce/tile_lists.h"
+
 namespace cairn::renderer {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr std::size_t patch_limit = 4096;
 }  // namespace
 
 SurfaceOracle::SurfaceOracle(const TreeShape& shape, const voxelizer::GpuSurface& surface,
-                             voxelizer::Voxelizer& voxelizer, TriangleLists& lists)
+                             voxelizer::Voxelizer& voxelizer, voxelizer::TriangleIndex& lists)
     : shape_(shape), surface_(surface), voxelizer_(voxelizer), lists_(lists) {}
 
 glm::uvec2 SurfaceOracle::child_mask(const Tile& tile) {
@@ -57,7 +59,7 @@ const SurfaceOracle::Patch& SurfaceOracle::patch_for(const Tile& tile) {
     if (owner.level == 0) {
         patch.pyramid = voxelizer_.voxelize_pyramid(surface_, region);
     } else {
-        patch.pyramid = voxelizer_.voxelize_pyramid(surface_, region, lists_.list(owner));
+        patch.pyramid = voxelizer_.voxelize_pyramid(surface_, region, lists_.list(cell_of(owner, shape_)));
     }
     return patches_.emplace(key, std::move(patch)).first->second;
 }

@@ -4,9 +4,9 @@
 #include <unordered_map>
 
 #include "renderer/produce/oracle.h"
-#include "renderer/produce/triangle_lists.h"
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/surface.h"
+#include "voxelizer/triangle_index.h"
 #include "voxelizer/voxelizer.h"
 
 namespace cairn::renderer {
@@ -19,7 +19,7 @@ class SurfaceOracle final : public Oracle {
 public:
     /// Refers to all four, which must outlive it.
     SurfaceOracle(const TreeShape& shape, const voxelizer::GpuSurface& surface,
-                  voxelizer::Voxelizer& voxelizer, TriangleLists& lists);
+                  voxelizer::Voxelizer& voxelizer, voxelizer::TriangleIndex& lists);
 
     [[nodiscard]] glm::uvec2 child_mask(const Tile& tile) override;
 
@@ -35,7 +35,7 @@ private:
     TreeShape shape_;
     const voxelizer::GpuSurface& surface_;
     voxelizer::Voxelizer& voxelizer_;
-    TriangleLists& lists_;
+    voxelizer::TriangleIndex& lists_;
     std::unordered_map<std::uint64_t, Patch> patches_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "renderer/produce/tile_lists.h"
 #include "shaders/interop/bindings.h"
 
 namespace cairn::renderer {
@@ -24,7 +25,7 @@ std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
 }  // namespace
 
 SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface,
-                                 TriangleLists& lists, const gl::ShaderSource& shaders)
+                                 voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders)
     : shape_(shape), surface_(surface), lists_(lists), pairs_(surface.chunks.size()) {
     const std::size_t brick_bytes = scratch_bytes_a_brick(shape, surface.has_color);
     batch_ = int(std::clamp<std::size_t>(scratch_budget_bytes / brick_bytes, 1, 0xFFFF));
@@ -61,10 +62,10 @@ void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
         const Tile& tile = requests[i].tile;
         const int shift = LATTICE_BITS - shape_.voxel_level(tile.level);
         const glm::ivec2 low = glm::ivec2(tile.position.y, tile.position.z) * shape_.m - 1;  // of the border
-        for (const std::uint32_t triangle : lists_.list(tile)) {
+        for (const std::uint32_t triangle : lists_.list(cell_of(tile, shape_))) {
             // Row r is touched when [r, r + 1] meets the triangle's extent: one more on each side of whole
             // numbers.
-            const TriangleLists::Box& box = lists_.box(triangle);
+            const voxelizer::TriangleIndex::Box& box = lists_.box(triangle);
             const glm::ivec2 first = glm::max(((glm::ivec2(box.low.y, box.low.z) - 1) >> shift) - low, 0);
             const glm::ivec2 last =
                 glm::min((glm::ivec2(box.high.y, box.high.z) >> shift) - low, shape_.m + 1);

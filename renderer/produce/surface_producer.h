@@ -6,9 +6,9 @@
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "renderer/produce/producer.h"
-#include "renderer/produce/triangle_lists.h"
 #include "shaders/interop/types.h"
 #include "voxelizer/surface.h"
+#include "voxelizer/triangle_index.h"
 
 namespace cairn::renderer {
 
@@ -18,8 +18,8 @@ namespace cairn::renderer {
 class SurfaceProducer final : public Producer {
 public:
     /// Refers to the surface and the lists, which must outlive it.
-    SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface, TriangleLists& lists,
-                    const gl::ShaderSource& shaders);
+    SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface,
+                    voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders);
 
     void produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
 
@@ -30,7 +30,7 @@ private:
 
     TreeShape shape_;
     const voxelizer::GpuSurface& surface_;
-    TriangleLists& lists_;
+    voxelizer::TriangleIndex& lists_;
     int batch_ = 1;
     gl::Program splat_;
     gl::Program masks_;

@@ -1,5 +1,5 @@
 // The triangle lists of tiles against all triangles of all tiles. CPU only.
-#include "renderer/produce/triangle_lists.h"
+#include "renderer/produce/tile_lists.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct Shape {
     int n, m;
 };
 
-class TriangleListsTest : public ::testing::TestWithParam<Shape> {
+class TileListsTest : public ::testing::TestWithParam<Shape> {
 protected:
     [[nodiscard]] static TreeShape shape() { return make_tree_shape(GetParam().n, GetParam().m, 4096); }
 };
@@ -82,7 +82,7 @@ Tile tile_at_vertex(Random& random, const TreeShape& shape, const voxelizer::Sur
 }
 
 /// Every list equals brute force, triangle by triangle.
-std::size_t expect_same_lists(TriangleLists& lists, const TreeShape& shape, const voxelizer::Surface& surface,
+std::size_t expect_same_lists(voxelizer::TriangleIndex& lists, const TreeShape& shape, const voxelizer::Surface& surface,
                               int tiles_a_level, int seed) {
     Random random{std::uint32_t(seed)};
     std::size_t listed = 0;
@@ -90,7 +90,7 @@ std::size_t expect_same_lists(TriangleLists& lists, const TreeShape& shape, cons
         for (int level = shape.max_level; level >= 0; --level) {
             const Tile tile = i % 3 == 0 ? random_tile(random, shape, level)
                                          : tile_at_vertex(random, shape, surface, level);
-            const std::span<const std::uint32_t> list = lists.list(tile);
+            const std::span<const std::uint32_t> list = lists.list(cell_of(tile, shape));
             const std::vector<std::uint32_t> truth = brute_force(shape, surface, tile);
             listed += truth.size();
             EXPECT_TRUE(std::equal(list.begin(), list.end(), truth.begin(), truth.end()))
@@ -101,52 +101,52 @@ std::size_t expect_same_lists(TriangleLists& lists, const TreeShape& shape, cons
     return listed;
 }
 
-TEST_P(TriangleListsTest, HoldExactlyWhatMeetsTheTileAndItsBorder) {
+TEST_P(TileListsTest, HoldExactlyWhatMeetsTheTileAndItsBorder) {
     const voxelizer::Surface surface = random_surface(400, 11);
     ASSERT_TRUE(surface.far_triangles.empty());
-    TriangleLists lists(shape(), surface);
+    voxelizer::TriangleIndex lists = tile_lists(shape(), surface);
     EXPECT_GT(expect_same_lists(lists, shape(), surface, 150, 12), 1000U);
 }
 
-TEST_P(TriangleListsTest, HoldExactlyWhatMeetsTheTileInARealScene) {
+TEST_P(TileListsTest, HoldExactlyWhatMeetsTheTileInARealScene) {
     const voxelizer::Surface surface = knot();
-    TriangleLists lists(shape(), surface);
+    voxelizer::TriangleIndex lists = tile_lists(shape(), surface);
     EXPECT_GT(expect_same_lists(lists, shape(), surface, 12, 13), 1000U);
 }
 
-TEST_P(TriangleListsTest, LoseNothingWhenWhatTheyHoldIsDropped) {
+TEST_P(TileListsTest, LoseNothingWhenWhatTheyHoldIsDropped) {
     const voxelizer::Surface surface = random_surface(400, 14);
     for (const std::size_t held : {0, 500, 5000}) {
-        TriangleLists lists(shape(), surface, held);
+        voxelizer::TriangleIndex lists = tile_lists(shape(), surface, held);
         expect_same_lists(lists, shape(), surface, 40, 15);
     }
 }
 
-TEST_P(TriangleListsTest, CountFacesOnTheTilesSidesToBothNeighbours) {
+TEST_P(TileListsTest, CountFacesOnTheTilesSidesToBothNeighbours) {
     // A square in the plane between the two halves of the cube, and one a border further on.
     const std::int64_t half = lattice_side / 2;
     const std::int64_t voxel = lattice_side >> shape().voxel_level(1);
     auto square = [](std::int64_t x) { return LatticeTriangle{{{x, 5, 5}, {x, 900, 5}, {x, 5, 900}}}; };
     const voxelizer::Surface surface =
         lattice_surface({square(half), square(half + voxel), square(half + voxel + 1)}, 4096);
-    TriangleLists lists(shape(), surface);
+    voxelizer::TriangleIndex lists = tile_lists(shape(), surface);
     const int n = shape().n;
-    const std::span<const std::uint32_t> left = lists.list({1, {n / 2 - 1, 0, 0}});
+    const std::span<const std::uint32_t> left = lists.list({shape().n_shift(), {n / 2 - 1, 0, 0}});
     EXPECT_EQ(std::vector<std::uint32_t>(left.begin(), left.end()), (std::vector<std::uint32_t>{0, 1}));
-    const std::span<const std::uint32_t> right = lists.list({1, {n / 2, 0, 0}});
+    const std::span<const std::uint32_t> right = lists.list({shape().n_shift(), {n / 2, 0, 0}});
     EXPECT_EQ(std::vector<std::uint32_t>(right.begin(), right.end()), (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
-TEST_P(TriangleListsTest, NumberTrianglesAcrossChunks) {
+TEST_P(TileListsTest, NumberTrianglesAcrossChunks) {
     voxelizer::Surface surface = random_surface(50, 16);
     const voxelizer::Surface more = random_surface(60, 17);
     surface.chunks.push_back(more.chunks[0]);
     surface.triangle_count += more.triangle_count;
-    TriangleLists lists(shape(), surface);
+    voxelizer::TriangleIndex lists = tile_lists(shape(), surface);
     EXPECT_GT(expect_same_lists(lists, shape(), surface, 30, 18), 100U);
 }
 
-INSTANTIATE_TEST_SUITE_P(NAndM, TriangleListsTest, ::testing::Values(Shape{4, 16}, Shape{2, 8}, Shape{2, 32}),
+INSTANTIATE_TEST_SUITE_P(NAndM, TileListsTest, ::testing::Values(Shape{4, 16}, Shape{2, 8}, Shape{2, 32}),
                          [](const auto& shape) {
                              return fmt::format("N{}M{}", shape.param.n, shape.param.m);
                          });
