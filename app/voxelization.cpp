@@ -11,9 +11,7 @@ namespace cairn::app {
 void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options) {
     add_grid_options(verb, options.grid);
     add_parsed_option(
-        verb, "--method", "NAME",
-        "how voxels are found: conservative (the default, exact), slice-map, three-axis, "
-        "three-axis-conservative",
+        verb, "--method", "NAME", "conservative, slice-map, three-axis, three-axis-conservative",
         [&options](const std::string& name) { options.method = voxelizer::method_named(name); });
     add_common_options(verb, options.common);
 }
