@@ -117,7 +117,8 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
 
 void add_grid_options(CLI::App& verb, GridOptions& options) {
     add_parsed_option(verb, "-r,--resolution", "N|X,Y,Z",
-                      fmt::format("voxels along each axis, 1 to {}: a cube, or three\ndifferent numbers",
+                      fmt::format("voxels along each axis, 1 to {}: a cube, or a number for\neach (then the "
+                                  "JSON's resolution is an array of three)",
                                   max_grid_resolution),
                       [&options](const std::string& text) {
                           options.resolution = parse_axes("--resolution", text, 1, max_grid_resolution);

@@ -1,7 +1,9 @@
-#include <cstdint>
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -37,7 +39,9 @@ void add_options(CLI::App& verb, Options& options) {
 
 /// A .npy holds every voxel, empty or not: whether it can be is known before any work.
 void check_room(const fs::path& path, const voxelizer::Grid& grid) {
-    if (is_device(path) || path.extension() != ".npy") return;
+    std::string ending = path.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    if (is_device(path) || ending != ".npy") return;
     const glm::dvec3 voxels(grid.resolution);
     const double needed = voxels.x * voxels.y * voxels.z;
     std::error_code unknown;

@@ -21,6 +21,8 @@ public:
     explicit ExactVoxels(const voxelizer::Surface& surface);
     ExactVoxels(const ExactVoxels&) = delete;
     ExactVoxels& operator=(const ExactVoxels&) = delete;
+    ExactVoxels(ExactVoxels&&) = delete;
+    ExactVoxels& operator=(ExactVoxels&&) = delete;
     ~ExactVoxels();
 
     [[nodiscard]] voxelizer::BitGrid in(const voxelizer::Region& region) const;

@@ -257,7 +257,7 @@ TEST(AppOutput, AFullDiskIsNoSuccess) {
 TEST(AppOutput, AnArrayThatTheDiskCannotHoldIsRefusedBeforeTheWork) {
     const ScratchFolder folder;
     const Answer answer =
-        cairn({"voxelize", "builtin:cornell", "-r", "65536", "-o", folder.file("huge.npy"), "--quiet"});
+        cairn({"voxelize", "builtin:cornell", "-r", "65536", "-o", folder.file("huge.NPY"), "--quiet"});
     expect_error(answer, 5, "262144.0 GiB");
     expect_contains(answer.err, "GiB are free");
     expect_contains(answer.err, ".vdb");

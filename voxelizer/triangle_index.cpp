@@ -92,8 +92,10 @@ void TriangleIndex::split(const Cell& parent, Node& node) {
         const glm::ivec3 to = glm::min(last, glm::ivec3(n - 1));
         for (int z = from.z; z <= to.z; ++z) {
             for (int y = from.y; y <= to.y; ++y) {
-                for (int x = from.x; x <= to.x; ++x)
-                    children[std::size_t(x + n * (y + n * z))].push_back(triangle);
+                for (int x = from.x; x <= to.x; ++x) {
+                    const int child = x + n * (y + n * z);
+                    children[std::size_t(child)].push_back(triangle);
+                }
             }
         }
     }
