@@ -11,6 +11,8 @@ packages=(
   libegl1 libgl1-mesa-dri
   # to test, and to have something to show
   libgtest-dev glslang-tools xvfb assimp-testmodels
+  # to measure: a peer, and what draws the charts
+  libopenvdb-dev libboost-dev gnuplot-nox
 )
 
 # Mesa 25.1 ended OSMesa, so a newer distribution may lack it; EGL then takes its place.

@@ -18,8 +18,13 @@ public:
     /// @param bits  BitGrid::words of the finest level, `size` voxels
     [[nodiscard]] BitmaskPyramid build(const gl::Buffer& bits, const glm::ivec3& size);
 
+    /// Computing the coarser levels of the last `build()`, no read-back, from an idle driver to an idle
+    /// driver.
+    [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
+
 private:
     gl::Program halve_;
+    double last_milliseconds_ = 0.0;
 };
 
 /// Bytes of BitGrid::words.
