@@ -124,7 +124,6 @@ ExitCode run(const Options& options) {
     for (const std::filesystem::path& file : chart.files)
         files.push_back(file.string());
     report.add("output", std::move(files));
-    report.add("notes", Json(chart.notes));
     report.add("threads", std::thread::hardware_concurrency());
     report.add("driver", driver.name());
     report.add("backend", driver.backend());

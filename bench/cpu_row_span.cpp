@@ -94,8 +94,8 @@ public:
 private:
     [[nodiscard]] Span slabs_of(const std::array<glm::ivec3, 3>& p, const Region& region) const {
         const int shift = LATTICE_BITS - region.level;
-        const glm::ivec3 low = ((glm::min(glm::min(p[0], p[1]), p[2]) - 1) >> shift) - region.origin;
-        const glm::ivec3 high = (glm::max(glm::max(p[0], p[1]), p[2]) >> shift) - region.origin;
+        const glm::ivec3 low = low_voxel(p, shift) - region.origin;
+        const glm::ivec3 high = high_voxel(p, shift) - region.origin;
         if (glm::any(glm::lessThan(high, glm::ivec3(0))) ||
             glm::any(glm::greaterThanEqual(low, region.size))) {
             return {1, 0};
@@ -116,19 +116,21 @@ public:
         : surface_(surface), region_(region), bits_(bits), slices_(slices) {}
 
     void mark(const SurfaceChunk& chunk, std::size_t number) {
-        const RowSpans spans(corners_of(chunk, number), LATTICE_BITS - region_.level);
+        const std::array<glm::ivec3, 3> corners = corners_of(chunk, number);
+        const int shift = LATTICE_BITS - region_.level;
         const interop::SurfaceTriangle& triangle = chunk.triangles[number];
         const interop::SurfaceMaterial& material = surface_.materials[triangle.vertices_material.w];
         const bool masked = (material.flags >> MATERIAL_MASK_BIT & 1U) != 0;
+        if (!masked && mark_line(corners, shift)) return;
+        const RowSpans spans(corners, shift);
         if (!masked) {
-            mark(
-                spans, [](int, int, int) { return true; }, true);
+            const auto all = [](int, int, int) { return true; };
+            mark(spans, all, true);
             return;
         }
         std::array<glm::i64vec3, 3> positions;
         std::array<glm::vec2, 3> texcoords;
         std::array<std::uint32_t, 3> colors;
-        const std::array<glm::ivec3, 3> corners = corners_of(chunk, number);
         for (std::size_t i = 0; i < 3; ++i) {
             const auto& attributes = chunk.attributes[triangle.vertices_material[int(i)]];
             positions[i] = corners[i];
@@ -143,6 +145,24 @@ public:
     }
 
 private:
+    /// A triangle whose box is one voxel wide along two axes touches every voxel of the box, for it is
+    /// connected. Most are of that kind where triangles are smaller than voxels.
+    bool mark_line(const std::array<glm::ivec3, 3>& p, int shift) {
+        const glm::ivec3 low = low_voxel(p, shift);
+        const glm::ivec3 high = high_voxel(p, shift);
+        if (int(low.x != high.x) + int(low.y != high.y) + int(low.z != high.z) > 1) return false;
+        const glm::ivec3 origin = region_.origin;
+        const glm::ivec3 first = glm::max(low - origin, glm::ivec3(0, 0, slices_.first));
+        const glm::ivec3 last =
+            glm::min(high - origin, glm::ivec3(region_.size.x - 1, region_.size.y - 1, slices_.last));
+        if (glm::any(glm::greaterThan(first, last))) return true;
+        for (int z = first.z; z <= last.z; ++z) {
+            for (int y = first.y; y <= last.y; ++y)
+                set_bits(&bits_.words[bits_.word_index(0, y, z)], first.x, last.x);
+        }
+        return true;
+    }
+
     /// @param whole_rows  every voxel of a row passes
     template <typename Passes>
     void mark(const RowSpans& spans, const Passes& passes, bool whole_rows) {

@@ -135,14 +135,6 @@ std::array<glm::i64vec2, 3> projected(const std::array<glm::ivec3, 3>& p, const 
     return out;
 }
 
-/// A voxel that ends where the triangle begins is touched too.
-glm::ivec3 low_voxel(const std::array<glm::ivec3, 3>& p, int shift) {
-    return (glm::min(glm::min(p[0], p[1]), p[2]) - 1) >> shift;
-}
-glm::ivec3 high_voxel(const std::array<glm::ivec3, 3>& p, int shift) {
-    return glm::max(glm::max(p[0], p[1]), p[2]) >> shift;
-}
-
 }  // namespace
 
 RowSpans::RowSpans(const std::array<glm::ivec3, 3>& corners, int shift)

@@ -41,6 +41,14 @@ private:
     double error_;
 };
 
+/// The box of voxels that a triangle's own box touches. A voxel that ends where it begins is touched too.
+[[nodiscard]] inline glm::ivec3 low_voxel(const std::array<glm::ivec3, 3>& p, int shift) {
+    return (glm::min(glm::min(p[0], p[1]), p[2]) - 1) >> shift;
+}
+[[nodiscard]] inline glm::ivec3 high_voxel(const std::array<glm::ivec3, 3>& p, int shift) {
+    return glm::max(glm::max(p[0], p[1]), p[2]) >> shift;
+}
+
 /// The voxels that a closed triangle touches, row by row along x.
 class RowSpans {
 public:
@@ -48,7 +56,6 @@ public:
     /// @param shift    log2 of a voxel's side
     RowSpans(const std::array<glm::ivec3, 3>& corners, int shift);
 
-    /// Boxes of voxels that the triangle's own box touches.
     [[nodiscard]] const glm::ivec3& low() const { return low_; }
     [[nodiscard]] const glm::ivec3& high() const { return high_; }
 

@@ -177,7 +177,7 @@ private:
         std::string ticks;
         for (int power = bottom_; power <= top_; ++power) {
             ticks +=
-                fmt::format("{}\"{:g} %\" {}", ticks.empty() ? "" : ", ", std::pow(10.0, power + 2), power);
+                fmt::format("{}\"{:g} %%\" {}", ticks.empty() ? "" : ", ", std::pow(10.0, power + 2), power);
         }
         ticks += fmt::format(", \"exact\" {}, \"finds none\" {}",
                              bottom_ - lane_ * (1.2 + 0.5 * std::max(double(exact_.size()) - 1.0, 0.0)),
