@@ -21,6 +21,7 @@ constexpr std::int64_t lattice_side = std::int64_t(1) << LATTICE_BITS;
 struct Part {
     SurfaceChunk mesh;
     std::vector<FarTriangle> far_triangles;
+    std::vector<std::array<glm::i64vec3, 3>> outside_triangles;
     bool has_color = false;
     bool has_mask = false;
 };
@@ -58,17 +59,20 @@ bool on_lattice_range(const glm::i64vec3& p) {
 class Flattener {
 public:
     Flattener(const scenes::Scene& scene, const scenes::Item& item, const Grid& grid,
-              const SurfaceMaterials& materials, bool attributes)
+              const SurfaceMaterials& materials, const SurfaceOptions& options)
         : item_(item),
           primitive_(*item.primitive),
           grid_(grid),
           materials_(materials),
-          attributes_(attributes),
+          attributes_(options.attributes || materials.any_masked),
+          outside_(options.outside),
           numbers_(item.positions.size(), -1) {
         if (primitive_.material >= 0) {
             uv_from_mesh_ = scene.materials[std::size_t(primitive_.material)].uv_from_mesh;
         }
         const glm::dmat3 linear(item.world_from_mesh);
+        // glTF: a mirrored node turns the front of its triangles with it.
+        mirrored_ = primitive_.topology == scenes::Topology::triangles && glm::determinant(linear) < 0.0;
         has_normals_ = !item.normals.empty() && glm::determinant(linear) != 0.0;
         if (has_normals_) normal_from_mesh_ = glm::transpose(glm::inverse(linear));
         lattice_.reserve(item.positions.size());
@@ -88,6 +92,7 @@ public:
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 vertices[corner] = primitive_.indices[first + std::min(corner, corners - 1)];
             }
+            if (mirrored_) std::swap(vertices[1], vertices[2]);
             add(vertices);
         }
         for (const glm::u8vec4& color : primitive_.colors) {
@@ -101,16 +106,22 @@ private:
         const glm::i64vec3& a = lattice_[vertices[0]];
         const glm::i64vec3& b = lattice_[vertices[1]];
         const glm::i64vec3& c = lattice_[vertices[2]];
-        if (glm::any(glm::lessThan(glm::max(glm::max(a, b), c), glm::i64vec3(0))) ||
-            glm::any(glm::greaterThan(glm::min(glm::min(a, b), c), glm::i64vec3(lattice_side)))) {
-            return;
-        }
+        const glm::i64vec3 low = glm::min(glm::min(a, b), c);
+        const glm::i64vec3 high = glm::max(glm::max(a, b), c);
+        int axes_apart = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            axes_apart += int(high[axis] < 0 || low[axis] > lattice_side);
+        if (axes_apart > (outside_ ? 1 : 0)) return;
         Shown shown = Shown::whole;
         if (materials_.is_masked(primitive_.material)) {
             shown = materials_.shown(primitive_.material,
                                      {texcoord(vertices[0]), texcoord(vertices[1]), texcoord(vertices[2])},
                                      {color(vertices[0]), color(vertices[1]), color(vertices[2])});
             if (shown == Shown::nothing) return;
+        }
+        if (axes_apart > 0) {
+            if (shown == Shown::whole) part_.outside_triangles.push_back({a, b, c});
+            return;
         }
         part_.has_mask = part_.has_mask || shown == Shown::cut;
         const std::uint32_t material = materials_.number(primitive_.material, shown);
@@ -158,6 +169,8 @@ private:
     const Grid& grid_;
     const SurfaceMaterials& materials_;
     bool attributes_;
+    bool outside_;
+    bool mirrored_ = false;
     bool has_normals_ = false;
     glm::mat3 uv_from_mesh_{1.0F};
     glm::dmat3 normal_from_mesh_{1.0};
@@ -196,7 +209,7 @@ void append(Surface& surface, const SurfaceChunk& part) {
 }
 
 void flatten(Surface& surface, const scenes::Scene& scene, const scenes::Snapshot& snapshot,
-             const SurfaceMaterials& materials, bool attributes) {
+             const SurfaceMaterials& materials, const SurfaceOptions& options) {
     // Items side by side, a bounded number of triangles at a time: the parts exist beside the surface.
     constexpr std::size_t group_triangles = std::size_t(1) << 19;
     const std::vector<scenes::Item>& items = snapshot.items;
@@ -207,12 +220,14 @@ void flatten(Surface& surface, const scenes::Scene& scene, const scenes::Snapsho
         }
         std::vector<Part> parts(last - first);
         tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
-            parts[i] = Flattener(scene, items[first + i], surface.grid, materials, attributes).run();
+            parts[i] = Flattener(scene, items[first + i], surface.grid, materials, options).run();
         });
         for (const Part& part : parts) {
             append(surface, part.mesh);
             surface.far_triangles.insert(surface.far_triangles.end(), part.far_triangles.begin(),
                                          part.far_triangles.end());
+            surface.outside_triangles.insert(surface.outside_triangles.end(), part.outside_triangles.begin(),
+                                             part.outside_triangles.end());
             surface.triangle_count += part.mesh.triangles.size() + part.far_triangles.size();
             surface.has_color = surface.has_color || part.has_color;
             surface.has_mask = surface.has_mask || part.has_mask;
@@ -231,7 +246,7 @@ Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapsh
         surface.grid = grid;
         surface.has_color = materials.has_color;
         surface.uniform_color = materials.uniform_color;
-        flatten(surface, scene, snapshot, materials, options.attributes || materials.any_masked);
+        flatten(surface, scene, snapshot, materials, options);
         surface.materials = std::move(materials.materials);
         surface.texels = std::move(materials.texels);
         return surface;
