@@ -44,9 +44,23 @@ Contender cpu_row_span(const Trial& trial) {
 }
 
 #ifdef CAIRN_BENCH_OPENVDB
+/// Far triangles are left out, for the library takes floats.
 Contender openvdb(const Trial& trial) {
-    const auto mesh = std::make_shared<OpenVdbMesh>(trial.surface, trial.region);
-    return {"openvdb", on_cpu, [mesh](voxelizer::BitGrid* voxels) { return mesh->convert(voxels); }};
+    const double unit = 1.0 / trial.region.voxel_side();
+    std::vector<glm::vec3> points;
+    std::vector<glm::uvec3> triangles;
+    for (const voxelizer::SurfaceChunk& chunk : trial.surface.chunks) {
+        const auto first = unsigned(points.size());
+        for (const auto& p : chunk.positions)
+            points.emplace_back(glm::dvec3(p[0], p[1], p[2]) * unit - glm::dvec3(trial.region.origin));
+        for (const interop::SurfaceTriangle& triangle : chunk.triangles)
+            triangles.push_back(first + glm::uvec3(triangle.vertices_material));
+    }
+    const OpenVdbMesh mesh(points, triangles);
+    return {"openvdb", on_cpu, [mesh, size = trial.region.size](voxelizer::BitGrid* voxels) {
+                if (voxels != nullptr) *voxels = voxelizer::BitGrid(size);
+                return mesh.convert(voxels);
+            }};
 }
 #endif
 

@@ -7,58 +7,41 @@
 #include <openvdb/tools/MeshToVolume.h>
 
 namespace cairn::bench {
-namespace {
 
-/// The mesh as the library asks for it; voxel i has its centre at i.
-class Adapter {
-public:
-    Adapter(const std::vector<glm::vec3>& points, const std::vector<glm::uvec3>& triangles)
-        : points_(points), triangles_(triangles) {}
-    [[nodiscard]] std::size_t polygonCount() const { return triangles_.size(); }
-    [[nodiscard]] std::size_t pointCount() const { return points_.size(); }
-    [[nodiscard]] static std::size_t vertexCount(std::size_t /*polygon*/) { return 3; }
-    void getIndexSpacePoint(std::size_t polygon, std::size_t corner, openvdb::Vec3d& out) const {
-        const glm::vec3& p = points_[triangles_[polygon][int(corner)]];
-        out = openvdb::Vec3d(p.x, p.y, p.z);
-    }
-
-private:
-    const std::vector<glm::vec3>& points_;
-    const std::vector<glm::uvec3>& triangles_;
+struct OpenVdbMesh::Mesh {
+    std::vector<openvdb::Vec3s> points;  ///< the library's voxel i has its centre at i
+    std::vector<openvdb::Vec3I> triangles;
 };
 
-}  // namespace
-
-OpenVdbMesh::OpenVdbMesh(const voxelizer::Surface& surface, const voxelizer::Region& region)
-    : region_(region) {
+OpenVdbMesh::OpenVdbMesh(const std::vector<glm::vec3>& points, const std::vector<glm::uvec3>& triangles) {
     openvdb::initialize();
-    const double unit = 1.0 / region.voxel_side();
-    for (const voxelizer::SurfaceChunk& chunk : surface.chunks) {
-        const auto first = unsigned(points_.size());
-        for (const auto& p : chunk.positions)
-            points_.emplace_back(glm::dvec3(p[0], p[1], p[2]) * unit - 0.5);
-        for (const interop::SurfaceTriangle& triangle : chunk.triangles)
-            triangles_.push_back(first + glm::uvec3(triangle.vertices_material));
-    }
+    const auto mesh = std::make_shared<Mesh>();
+    for (const glm::vec3& p : points)
+        mesh->points.emplace_back(p.x - 0.5F, p.y - 0.5F, p.z - 0.5F);
+    for (const glm::uvec3& t : triangles)
+        mesh->triangles.emplace_back(t.x, t.y, t.z);
+    mesh_ = mesh;
 }
 
 double OpenVdbMesh::convert(voxelizer::BitGrid* voxels) const {
-    const Adapter mesh(points_, triangles_);
+    // These types are those that the library itself was built for.
+    const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> mesh(mesh_->points,
+                                                                                          mesh_->triangles);
     const openvdb::math::Transform::Ptr one_voxel = openvdb::math::Transform::createLinearTransform(1.0);
+    openvdb::util::NullInterrupter never;
     const auto start = std::chrono::steady_clock::now();
     const openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        mesh, *one_voxel, 1.0F, 1.0F, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
+        never, mesh, *one_voxel, 1.0F, 1.0F, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
     const double milliseconds =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     if (voxels == nullptr) return milliseconds;
-    *voxels = voxelizer::BitGrid(region_.size);
     const float half_diagonal = float(std::sqrt(0.75));
     for (auto value = grid->cbeginValueOn(); value; ++value) {
         if (!value.isVoxelValue() || std::abs(*value) > half_diagonal) continue;
         const openvdb::Coord& at = value.getCoord();
-        const glm::ivec3 voxel = glm::ivec3(at.x(), at.y(), at.z()) - region_.origin;
+        const glm::ivec3 voxel(at.x(), at.y(), at.z());
         if (glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) &&
-            glm::all(glm::lessThan(voxel, region_.size))) {
+            glm::all(glm::lessThan(voxel, voxels->size))) {
             voxels->set(voxel);
         }
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <span>
 #include <vector>
 
@@ -22,20 +23,33 @@ bool is_whole(Row row) {
     return winding == 0;
 }
 
+/// Calls visit(first, end, whole) for each stretch of a row that it says is inside: by winding if the row is
+/// whole, else by parity.
+template <typename Visit>
+void visit_inside(Row row, const Visit& visit) {
+    const bool whole = is_whole(row);
+    if (!whole && row.size() % 2 != 0) return;
+    int depth = 0;
+    int since = 0;
+    for (const RowCrossings::Event& event : row) {
+        const int before = depth;
+        depth = whole ? depth + event.winding() : 1 - depth;
+        if (before == 0) since = event.voxel();
+        if (depth == 0 && since < event.voxel()) visit(since, event.voxel(), whole);
+    }
+}
+
 /// What a row says about one of its voxels.
 struct Verdict {
-    bool whole;   ///< its signs add up to 0
-    bool inside;  ///< by winding if whole, else by parity
+    bool inside = false;
+    bool whole = false;
 };
-
 Verdict verdict_on(Row row, int voxel) {
-    int winding = 0;
-    std::size_t before = 0;
-    while (before < row.size() && row[before].voxel() <= voxel)
-        winding += row[before++].winding();
-    const bool whole = is_whole(row);
-    const bool by_parity = row.size() % 2 == 0 && before % 2 == 1;
-    return {whole, whole ? winding != 0 : by_parity};
+    Verdict verdict;
+    visit_inside(row, [&](int first, int end, bool whole) {
+        if (first <= voxel && voxel < end) verdict = {true, whole};
+    });
+    return verdict;
 }
 
 /// Bits from first up to, not including, end.
@@ -87,38 +101,50 @@ void SolidFill::add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const
                     fmt::format("the tile at ({}, {}, {}) reaches outside the region", tile_origin.x,
                                 tile_origin.y, tile_origin.z));
     }
-    tbb::parallel_for(0, tile.size.z, [&](int z) {
-        for (int y = 0; y < tile.size.y; ++y)
-            fill_row(low + glm::ivec3(0, y, z), &tile.words[tile.word_index(0, y, z)], tile.size.x);
-    });
+    tbb::parallel_for(0, tile.size.z, [&](int z) { fill_slice(low, z, tile); });
 }
 
-void SolidFill::fill_row(const glm::ivec3& first, std::uint32_t* words, int count) const {
-    const Row row = along_x_.row(first);
-    if (doubtful_rows_ > 0 && !is_whole(row)) {
-        fill_doubtful_row(first, words, count);
-        return;
+void SolidFill::fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const {
+    std::vector<int> doubtful;
+    for (int y = 0; y < tile.size.y; ++y) {
+        const Row row = along_x_.row(low + glm::ivec3(0, y, z));
+        if (doubtful_rows_ > 0 && !is_whole(row)) {
+            doubtful.push_back(y);
+            continue;
+        }
+        std::uint32_t* const words = &tile.words[tile.word_index(0, y, z)];
+        visit_inside(row, [&](int first, int end, bool /*whole*/) {
+            set_bits(words, std::max(first - low.x, 0), std::min(end - low.x, tile.size.x));
+        });
     }
-    int winding = 0;
-    int since = 0;
-    for (const RowCrossings::Event& event : row) {
-        const int before = winding;
-        winding += event.winding();
-        if (before == 0) since = event.voxel();
-        if (winding == 0)
-            set_bits(words, std::max(since - first.x, 0), std::min(event.voxel() - first.x, count));
-    }
+    if (!doubtful.empty()) fill_doubtful_rows(low, z, doubtful, tile);
 }
 
-void SolidFill::fill_doubtful_row(const glm::ivec3& first, std::uint32_t* words, int count) const {
-    const Row row = along_x_.row(first);
-    for (int i = 0; i < count; ++i) {
-        const glm::ivec3 voxel = first + glm::ivec3(i, 0, 0);
-        const Verdict y = verdict_on(along_y_->row(voxel), voxel.y);
-        if (!y.inside) continue;
-        const Verdict z = verdict_on(along_z_->row(voxel), voxel.z);
-        if (!z.inside) continue;
-        if ((y.whole && z.whole) || verdict_on(row, voxel.x).inside) set_bits(words, i, i + 1);
+void SolidFill::fill_doubtful_rows(const glm::ivec3& low, int z, const std::vector<int>& rows,
+                                   BitGrid& tile) const {
+    // What the rows along y say about this slice: most say no, and only the others are asked further.
+    BitGrid inside({tile.size.x, tile.size.y, 1});
+    BitGrid inside_of_whole = inside;
+    for (int x = 0; x < tile.size.x; ++x) {
+        visit_inside(along_y_->row(low + glm::ivec3(x, 0, z)), [&](int first, int end, bool whole) {
+            for (int y = std::max(first - low.y, 0); y < std::min(end - low.y, tile.size.y); ++y) {
+                inside.set({x, y, 0});
+                if (whole) inside_of_whole.set({x, y, 0});
+            }
+        });
+    }
+    for (const int y : rows) {
+        for (int word = 0; word < tile.words_per_row(); ++word) {
+            for (std::uint32_t left = inside.words[inside.word_index(word * 32, y, 0)]; left != 0;
+                 left &= left - 1) {
+                const int x = word * 32 + std::countr_zero(left);
+                const glm::ivec3 voxel = low + glm::ivec3(x, y, z);
+                const Verdict along_z = verdict_on(along_z_->row(voxel), voxel.z);
+                if (!along_z.inside) continue;
+                const bool both_whole = along_z.whole && inside_of_whole.at({x, y, 0});
+                if (both_whole || verdict_on(along_x_.row(voxel), voxel.x).inside) tile.set({x, y, z});
+            }
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -54,8 +55,9 @@ public:
     [[nodiscard]] std::size_t size_bytes() const;
 
 private:
-    void fill_row(const glm::ivec3& first, std::uint32_t* words, int count) const;
-    void fill_doubtful_row(const glm::ivec3& first, std::uint32_t* words, int count) const;
+    /// @param low  of the tile, from the region's low corner
+    void fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const;
+    void fill_doubtful_rows(const glm::ivec3& low, int z, const std::vector<int>& rows, BitGrid& tile) const;
 
     Region whole_;
     RowCrossings along_x_;
