@@ -415,13 +415,13 @@ TEST(SolidFill, SaysWhatWouldFitBeforeItTakesTooMuch) {
     const Mesh mesh = box(glm::i64vec3(0), glm::i64vec3(lattice_side), random);
     const Surface surface = lattice_surface(mesh, 256);
     const Region region = cube(8);
-    EXPECT_EQ(SolidFill(surface, region).size_bytes(), 3U * 4U * 256U * 256U);
+    EXPECT_EQ(SolidFill(surface, region).size_bytes(), 256U * 256U * (3U * 4U) + 256U * 256U / 8U);
     try {
         const SolidFill fill(surface, region, 700000);
         ADD_FAILURE() << "it fitted";
     } catch (const Error& error) {
         EXPECT_EQ(error.fault(), Fault::memory);
-        EXPECT_EQ(error.way_out(), "241 x 241 x 241 would fit");
+        EXPECT_EQ(error.way_out(), "240 x 240 x 240 would fit");
     }
     EXPECT_THROW(SolidFill(surface, region, 1000), Error);
 }

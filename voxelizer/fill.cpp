@@ -28,7 +28,6 @@ bool is_whole(Row row) {
 template <typename Visit>
 void visit_inside(Row row, const Visit& visit) {
     const bool whole = is_whole(row);
-    if (!whole && row.size() % 2 != 0) return;
     int depth = 0;
     int since = 0;
     for (const RowCrossings::Event& event : row) {
@@ -73,7 +72,7 @@ SolidFill::SolidFill(const Surface& surface, const Region& whole, std::size_t me
     tbb::parallel_for(0, whole.size.z, [&](int z) {
         std::uint64_t here = 0;
         for (int y = 0; y < whole.size.y; ++y) {
-            if (is_whole(along_x_.row({0, y, z}))) continue;
+            if (!is_doubtful({0, y, z})) continue;
             ++here;
             std::atomic_ref(by_y[std::size_t(y)]).store(1, std::memory_order_relaxed);
         }
@@ -86,6 +85,10 @@ SolidFill::SolidFill(const Surface& surface, const Region& whole, std::size_t me
     along_y_.emplace(surface, whole, 1, left, 2, by_z);
     left -= along_y_->size_bytes();
     along_z_.emplace(surface, whole, 2, left, 1, by_y);
+}
+
+bool SolidFill::is_doubtful(const glm::ivec3& voxel) const {
+    return along_x_.is_odd(voxel) || !is_whole(along_x_.row(voxel));
 }
 
 std::size_t SolidFill::size_bytes() const {
@@ -107,13 +110,13 @@ void SolidFill::add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const
 void SolidFill::fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const {
     std::vector<int> doubtful;
     for (int y = 0; y < tile.size.y; ++y) {
-        const Row row = along_x_.row(low + glm::ivec3(0, y, z));
-        if (doubtful_rows_ > 0 && !is_whole(row)) {
+        const glm::ivec3 first_voxel = low + glm::ivec3(0, y, z);
+        if (doubtful_rows_ > 0 && is_doubtful(first_voxel)) {
             doubtful.push_back(y);
             continue;
         }
         std::uint32_t* const words = &tile.words[tile.word_index(0, y, z)];
-        visit_inside(row, [&](int first, int end, bool /*whole*/) {
+        visit_inside(along_x_.row(first_voxel), [&](int first, int end, bool /*whole*/) {
             set_bits(words, std::max(first - low.x, 0), std::min(end - low.x, tile.size.x));
         });
     }

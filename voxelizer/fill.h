@@ -41,7 +41,8 @@ public:
     static constexpr std::size_t default_memory_bytes = std::size_t(1) << 30;
 
     /// @param whole         the region that all tiles lie in
-    /// @param memory_bytes  what the crossings may take: 4 bytes a row and 4 a crossing
+    /// @param memory_bytes  what the crossings may take: 4 bytes a row, and 4 a crossing of rows that
+    ///                      are crossed an even number of times
     /// @throws Error (Fault::memory) before they take more; says what would fit.
     SolidFill(const Surface& surface, const Region& whole, std::size_t memory_bytes = default_memory_bytes);
 
@@ -55,6 +56,8 @@ public:
     [[nodiscard]] std::size_t size_bytes() const;
 
 private:
+    /// @param voxel  from the region's low corner; of the row along x
+    [[nodiscard]] bool is_doubtful(const glm::ivec3& voxel) const;
     /// @param low  of the tile, from the region's low corner
     void fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const;
     void fill_doubtful_rows(const glm::ivec3& low, int z, const std::vector<int>& rows, BitGrid& tile) const;

@@ -104,16 +104,24 @@ RowCrossings::RowCrossings(const Surface& surface, const Region& region, int axi
                            int by_axis, const Wanted& wanted)
     : u_((axis + 1) % 3), v_((axis + 2) % 3), u_size_(region.size[u_]) {
     const std::size_t row_count = std::size_t(u_size_) * std::size_t(region.size[v_]);
-    check_memory(double(row_count) * sizeof(std::uint32_t), memory_bytes, region);
+    const double row_bytes = double(row_count) * (sizeof(std::uint32_t) + 0.125);
+    check_memory(row_bytes, memory_bytes, region);
     ends_.assign(row_count, 0);
+    odd_.assign(row_count, false);
     // Counted first; then `ends_` holds where each row starts, and grows to where it ends.
     visit_all(surface, region, axis, by_axis, wanted, [&](int u, int v, const auto& /*rows*/) {
         const std::size_t row = std::size_t(v) * std::size_t(u_size_) + std::size_t(u);
         std::atomic_ref(ends_[row]).fetch_add(1, std::memory_order_relaxed);
     });
+    for (std::size_t row = 0; row < row_count; ++row) {
+        if (ends_[row] % 2 == 0) continue;
+        odd_[row] = true;
+        ends_[row] = 0;
+    }
     const std::uint64_t total = std::accumulate(ends_.begin(), ends_.end(), std::uint64_t(0));
-    const double bytes = double(row_count + total) * sizeof(std::uint32_t);
-    check_memory(bytes, std::min<std::size_t>(memory_bytes, std::size_t(1) << 34), region);
+    // Rows are numbered into the events by 32 bits.
+    const std::size_t limit_bytes = std::min<std::size_t>(memory_bytes, std::size_t(1) << 34);
+    check_memory(row_bytes + double(total) * sizeof(Event), limit_bytes, region);
     events_.resize(total);
     std::uint32_t next = 0;
     for (std::uint32_t& end : ends_)
@@ -121,6 +129,7 @@ RowCrossings::RowCrossings(const Surface& surface, const Region& region, int axi
     const int length = region.size[axis];
     visit_all(surface, region, axis, by_axis, wanted, [&](int u, int v, const auto& rows) {
         const std::size_t row = std::size_t(v) * std::size_t(u_size_) + std::size_t(u);
+        if (odd_[row]) return;
         const std::uint32_t place = std::atomic_ref(ends_[row]).fetch_add(1, std::memory_order_relaxed);
         const auto voxel = std::uint32_t(std::clamp<std::int64_t>(rows.first_beyond(u, v), 0, length));
         events_[place].packed = voxel << 1 | std::uint32_t(rows.winding() < 0);

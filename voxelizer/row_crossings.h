@@ -36,13 +36,17 @@ public:
         [[nodiscard]] int winding() const { return (packed & 1U) != 0 ? -1 : 1; }
     };
     /// Of the row through a voxel of the region (its coordinate along the axis does not matter), ascending.
+    /// None for an odd row.
     [[nodiscard]] std::span<const Event> row(const glm::ivec3& voxel) const {
         const std::size_t i = row_number(voxel);
         const std::size_t first = i == 0 ? 0 : ends_[i - 1];
         return {events_.data() + first, ends_[i] - first};
     }
+    /// Whether the row is crossed an odd number of times: its signs cannot add up to 0, and nothing can be
+    /// said about its voxels. Open meshes have many, so their crossings are not kept.
+    [[nodiscard]] bool is_odd(const glm::ivec3& voxel) const { return odd_[row_number(voxel)]; }
     [[nodiscard]] std::size_t size_bytes() const {
-        return ends_.size() * sizeof(std::uint32_t) + events_.size() * sizeof(Event);
+        return ends_.size() * sizeof(std::uint32_t) + events_.size() * sizeof(Event) + odd_.size() / 8;
     }
 
 private:
@@ -54,6 +58,7 @@ private:
     int u_size_;
     std::vector<std::uint32_t> ends_;  ///< of each row in `events_`
     std::vector<Event> events_;
+    std::vector<bool> odd_;
 };
 
 }  // namespace cairn::voxelizer
