@@ -66,24 +66,24 @@ public:
     [[nodiscard]] std::string script(const std::filesystem::path& picture) const {
         const int columns = scenes_.size() <= 1 ? 1 : scenes_.size() <= 4 ? 2 : 3;
         const int rows = (int(scenes_.size()) + columns - 1) / columns;
+        const int height = 230 + 440 * rows;
         std::string out = fmt::format(
             "set terminal pngcairo noenhanced size {},{} font \"sans,12\" background \"#ffffff\"\n"
             "set output {}\n",
-            120 + 560 * columns, 190 + 440 * rows, quoted(picture.string()));
+            std::max(120 + 560 * columns, 1200), height, quoted(picture.string()));
         out += data();
-        out += fmt::format(
-            "set multiplot layout {},{} margins 0.085,0.985,{:.4f},{:.4f} spacing 0.03,{:.4f}\n", rows,
-            columns, 110.0 / (190 + 440 * rows), 1.0 - 80.0 / (190 + 440 * rows), 62.0 / (190 + 440 * rows));
+        out +=
+            fmt::format("set multiplot layout {},{} margins 0.085,0.985,{:.4f},{:.4f} spacing 0.03,{:.4f}\n",
+                        rows, columns, 140.0 / height, 1.0 - 90.0 / height, 66.0 / height);
         out += fmt::format("set label 1000 {} at screen 0.5,{:.4f} center font \"sans,15\"\n",
                            quoted("Voxelization: time against error; down and to the left is better"),
-                           1.0 - 24.0 / (190 + 440 * rows));
+                           1.0 - 24.0 / height);
         out += fmt::format("set label 1001 {} at screen 0.5,{:.4f} center font \"sans,10\" tc \"#555555\"\n",
-                           quoted(fmt::format("{}, {} threads", driver_, threads_)),
-                           1.0 - 46.0 / (190 + 440 * rows));
+                           quoted(fmt::format("{}, {} threads", driver_, threads_)), 1.0 - 46.0 / height);
         out += axes();
-        out += legend(190 + 440 * rows);
+        out += legend(height);
         for (std::size_t i = 0; i < scenes_.size(); ++i)
-            out += panel(int(i), columns, rows);
+            out += panel(int(i), columns);
         return out + "unset multiplot\n";
     }
 
@@ -167,6 +167,19 @@ private:
         return out;
     }
 
+    /// Only the panels on the left name their heights.
+    [[nodiscard]] std::string heights(bool named) const {
+        std::string ticks;
+        const auto add = [&](const std::string& name, double at) {
+            ticks += fmt::format("{}\"{}\" {:.6g}", ticks.empty() ? "" : ", ", named ? name : "", at);
+        };
+        for (int power = bottom_; power <= top_; ++power)
+            add(fmt::format("{:g} %%", std::pow(10.0, power + 2)), power);
+        add("exact", bottom_ - lane_ * (1.2 + 0.5 * std::max(double(exact_.size()) - 1.0, 0.0)));
+        add("finds none", top_ + lane_);
+        return "set ytics (" + ticks + ")\n";
+    }
+
     [[nodiscard]] std::string axes() const {
         double fastest = points_.front().ms;
         double slowest = fastest;
@@ -174,19 +187,11 @@ private:
             fastest = std::min(fastest, p.ms);
             slowest = std::max(slowest, p.ms);
         }
-        std::string ticks;
-        for (int power = bottom_; power <= top_; ++power) {
-            ticks +=
-                fmt::format("{}\"{:g} %%\" {}", ticks.empty() ? "" : ", ", std::pow(10.0, power + 2), power);
-        }
-        ticks += fmt::format(", \"exact\" {}, \"finds none\" {}",
-                             bottom_ - lane_ * (1.2 + 0.5 * std::max(double(exact_.size()) - 1.0, 0.0)),
-                             top_ + lane_);
         std::string out =
             "set logscale x\nset format x \"%g\"\nunset key\nset grid x y lc \"#e4e4e4\" lt 1\n"
             "set border lc \"#888888\"\nset tics textcolor \"#333333\" nomirror\n";
-        out += fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\nset ytics ({})\n",
-                           fastest / 1.6, slowest * 1.6, lowest(), highest(), ticks);
+        out += fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", fastest / 1.6,
+                           slowest * 1.6, lowest(), highest());
         out += fmt::format(
             "set object 1 rectangle from graph 0,first {:.6g} to graph 1,first {:.6g} "
             "fc \"#e8f4ea\" fs solid noborder behind\n",
@@ -207,7 +212,7 @@ private:
             out += fmt::format(
                 "set label {} {} at screen {:.4f},{:.4f} left point pt {} ps 1.5 lc \"{}\" "
                 "offset character 1.2,0 font \"sans,11\"\n",
-                1100 + method, quoted(methods_[method]), 0.03 + step * double(method), 50.0 / height_px,
+                1100 + method, quoted(methods_[method]), 0.03 + step * double(method), 62.0 / height_px,
                 style.point, style.color);
         }
         std::string sizes;
@@ -219,18 +224,17 @@ private:
                                            "Black ring: no method is both faster and nearer to the truth "
                                            "at that resolution.   Error: (missing + extra) / true voxels",
                                            sizes)),
-                        20.0 / height_px);
+                        24.0 / height_px);
         return out;
     }
 
-    [[nodiscard]] std::string panel(int scene, int columns, int rows) const {
+    [[nodiscard]] std::string panel(int scene, int columns) const {
         std::string out =
             fmt::format("set title {} offset 0,-0.6 font \"sans,13\"\n", quoted(scenes_[std::size_t(scene)]));
         const bool lowest_row = scene + columns >= int(scenes_.size());
         out += fmt::format("set xlabel \"{}\" offset 0,0.4\nset ylabel \"{}\" offset 0.5,0\n",
                            lowest_row ? "milliseconds" : "", scene % columns == 0 ? "error" : "");
-        if (scene % columns != 0) out += "set format y \"\"\n";
-        (void)rows;
+        out += heights(scene % columns == 0);
         out += "plot ";
         for (std::size_t method = 0; method < methods_.size(); ++method) {
             const Style style = style_of(method);

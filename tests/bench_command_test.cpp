@@ -69,6 +69,15 @@ TEST(BenchRender, WritesATable) {
     EXPECT_GT(answer["measurements"][0]["converged_ms"], 0.0);
 }
 
+TEST(BenchUsage, HasHelpThatFitsATerminal) {
+    const Answer answer = cairn({"bench", "--help"});
+    EXPECT_EQ(answer.code, 0) << answer;
+    for (const char* word : {"voxelize", "render", "--scenes", "--resolutions", "--json"})
+        EXPECT_NE(answer.out.find(word), std::string::npos) << word;
+    for (const std::string& line : lines_of(answer.out))
+        EXPECT_LE(line.size(), 100U) << line;
+}
+
 TEST(BenchUsage, NamesTheChartsThatThereAre) {
     const Answer answer = cairn({"bench", "shadows"});
     EXPECT_EQ(answer.code, 2) << answer;
