@@ -8,8 +8,8 @@ namespace cairn::bench {
 
 std::span<const ChartKind> charts() {
     static constexpr std::array all = {
-        ChartKind{"voxelize", "every voxelization method and its peers: time and error", chart_voxelize},
-        ChartKind{"render", "frames with hard shadows beside Embree's single rays: time", chart_render},
+        ChartKind{"voxelize", "methods and their peers, by time and error", chart_voxelize},
+        ChartKind{"render", "frames with hard shadows beside Embree's rays", chart_render},
     };
     return all;
 }
