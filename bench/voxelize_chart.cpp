@@ -91,13 +91,12 @@ private:
     }
 
     [[nodiscard]] voxelizer::BitGrid truth_of(const Trial& trial, const std::vector<Contender>& all) {
-        const int resolution = trial.region.size.x;
-        if (resolution <= largest_reference || !row_spans_exact_)
+        const auto row_spans = std::find_if(all.begin(), all.end(),
+                                            [](const Contender& c) { return c.name == cpu_row_span_name; });
+        if (trial.region.size.x <= largest_reference || !row_spans_exact_ || row_spans == all.end())
             return reference::exact_voxels(trial.surface, trial.region);
         voxelizer::BitGrid truth;
-        for (const Contender& contender : all) {
-            if (contender.name == cpu_row_span_name) contender.run(&truth);
-        }
+        row_spans->run(&truth);
         return truth;
     }
 
