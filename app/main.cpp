@@ -58,6 +58,7 @@ ExitCode run(int argc, char** argv) {
     add_check(command, chosen);
     add_render(command, chosen);
     add_export(command, chosen);
+    add_bench(command, chosen);
     command.require_subcommand(0, 1);
     command.set_version_flag("--version", "cairn " CAIRN_VERSION);
     command.get_formatter()->column_width(38);

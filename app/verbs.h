@@ -18,6 +18,7 @@ void add_voxelize(CLI::App& command, Work& chosen);
 void add_check(CLI::App& command, Work& chosen);
 void add_render(CLI::App& command, Work& chosen);
 void add_export(CLI::App& command, Work& chosen);
+void add_bench(CLI::App& command, Work& chosen);
 
 /// Adds a verb whose options are an `Options`, and whose work is `run(options)`.
 template <typename Options>

@@ -49,7 +49,8 @@ const std::vector<Folder> folders = {
       "base/"}},
     {"renderer/", {"renderer/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/"}, false},
     {"app/",
-     {"app/", "renderer/", "reference/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/"}},
+     {"app/", "renderer/", "reference/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/",
+      "bench/chart.h"}},
     {"tests/", {""}},
     {"bench/", {""}},
 };

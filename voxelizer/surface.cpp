@@ -23,6 +23,7 @@ constexpr std::int64_t lattice_side = std::int64_t(1) << LATTICE_BITS;
 struct Part {
     SurfaceChunk mesh;
     std::vector<FarTriangle> far_triangles;
+    std::vector<std::array<glm::i64vec3, 3>> outside_triangles;
     bool has_color = false;
     bool has_mask = false;
 };
@@ -71,6 +72,9 @@ public:
         if (primitive_.material >= 0) {
             uv_from_mesh_ = scene.materials[std::size_t(primitive_.material)].uv_from_mesh;
         }
+        // glTF: a mirrored node turns the front of its triangles with it.
+        mirrored_ = primitive_.topology == scenes::Topology::triangles &&
+                    glm::determinant(glm::dmat3(item_.world_from_mesh)) < 0.0;
         if (options.unplaced) return;
         has_normals_ = !item_.normals.empty();
         normal_from_mesh_ = normal_from_mesh(item_.world_from_mesh);
@@ -91,6 +95,7 @@ public:
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 vertices[corner] = primitive_.indices[first + std::min(corner, corners - 1)];
             }
+            if (mirrored_) std::swap(vertices[1], vertices[2]);
             add(vertices);
         }
         for (const glm::u8vec4& color : primitive_.colors) {
@@ -104,16 +109,22 @@ private:
         const glm::i64vec3 a = lattice(vertices[0]);
         const glm::i64vec3 b = lattice(vertices[1]);
         const glm::i64vec3 c = lattice(vertices[2]);
-        if (glm::any(glm::lessThan(glm::max(glm::max(a, b), c), glm::i64vec3(0))) ||
-            glm::any(glm::greaterThan(glm::min(glm::min(a, b), c), glm::i64vec3(lattice_side)))) {
-            return;
-        }
+        const glm::i64vec3 low = glm::min(glm::min(a, b), c);
+        const glm::i64vec3 high = glm::max(glm::max(a, b), c);
+        int axes_apart = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            axes_apart += int(high[axis] < 0 || low[axis] > lattice_side);
+        if (axes_apart > (options_.outside ? 1 : 0)) return;
         Shown shown = Shown::whole;
         if (materials_.is_masked(primitive_.material)) {
             shown = materials_.shown(primitive_.material,
                                      {texcoord(vertices[0]), texcoord(vertices[1]), texcoord(vertices[2])},
                                      {color(vertices[0]), color(vertices[1]), color(vertices[2])});
             if (shown == Shown::nothing) return;
+        }
+        if (axes_apart > 0) {
+            if (shown == Shown::whole) part_.outside_triangles.push_back({a, b, c});
+            return;
         }
         part_.has_mask = part_.has_mask || shown == Shown::cut;
         const std::uint32_t material = materials_.number(primitive_.material, shown);
@@ -166,6 +177,7 @@ private:
     const scenes::Primitive& primitive_;
     const SurfaceMaterials& materials_;
     const SurfaceOptions& options_;
+    bool mirrored_ = false;
     bool has_normals_ = false;
     glm::mat3 uv_from_mesh_{1.0F};
     glm::dmat3 normal_from_mesh_{1.0};
@@ -230,6 +242,8 @@ void flatten(Surface& surface, const scenes::Scene& scene, const scenes::Snapsho
             append(surface, part.mesh);
             surface.far_triangles.insert(surface.far_triangles.end(), part.far_triangles.begin(),
                                          part.far_triangles.end());
+            surface.outside_triangles.insert(surface.outside_triangles.end(), part.outside_triangles.begin(),
+                                             part.outside_triangles.end());
             surface.triangle_count += part.mesh.triangles.size() + part.far_triangles.size();
             surface.has_color = surface.has_color || part.has_color;
             surface.has_mask = surface.has_mask || part.has_mask;

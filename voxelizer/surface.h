@@ -40,11 +40,13 @@ struct FarTriangle {
 /// The triangles of a snapshot on the lattice of a grid: what every voxelization method, the exact reference
 /// and the brick producer share, so that they speak of the same triangles. Segments and points are degenerate
 /// triangles. Triangles whose bounding box misses the root cube, and masked ones that no texel can show, are
-/// left out.
+/// left out. Vertices go counter-clockwise seen from the front, in mirrored nodes too.
 struct Surface {
     Grid grid;
     std::vector<SurfaceChunk> chunks;
     std::vector<FarTriangle> far_triangles;
+    /// Those that miss the root cube and yet lie before or behind it along an axis (SurfaceOptions::outside).
+    std::vector<std::array<glm::i64vec3, 3>> outside_triangles;
     std::vector<interop::SurfaceMaterial> materials;  ///< at least one
     std::vector<std::uint32_t> texels;  ///< RGBA8 of the images that are used, and counts of masks
     std::uint64_t triangle_count = 0;
@@ -56,7 +58,8 @@ struct Surface {
 
 struct SurfaceOptions {
     bool attributes =
-        false;  ///< normals, colours and texture coordinates too (the brick producer needs them)
+        false;             ///< normals, colours and texture coordinates too (the brick producer needs them)
+    bool outside = false;  ///< Surface::outside_triangles too (a solid fill needs them)
     /// All triangles, wherever they are, with `sources`, and with positions and normals left 0 for another to
     /// fill in (MovingSurface).
     bool unplaced = false;

@@ -73,6 +73,16 @@ std::string_view name_of(Method method) {
     return "";
 }
 
+std::span<const Method> methods() {
+    static constexpr auto all = [] {
+        std::array<Method, method_names.size()> out{};
+        for (std::size_t i = 0; i < out.size(); ++i)
+            out[i] = method_names[i].first;
+        return out;
+    }();
+    return all;
+}
+
 std::unique_ptr<Voxelizer> make_voxelizer(Method method, const gl::ShaderSource& shaders) {
     switch (method) {
         case Method::conservative:

@@ -27,6 +27,8 @@ enum class Method : std::uint8_t {
 /// @throws Error  Fault::usage: there is no such method; says which there are.
 [[nodiscard]] Method method_named(std::string_view name);
 [[nodiscard]] std::string_view name_of(Method method);
+/// All there are, in the order of the enumeration.
+[[nodiscard]] std::span<const Method> methods();
 
 /// Marks the voxels of a surface on the GPU, by one of the methods. Needs the current context of its
 /// construction.

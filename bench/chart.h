@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/table.h"
+#include "gl/shader_source.h"
+
+namespace cairn::bench {
+
+struct ChartOptions {
+    std::filesystem::path folder = ".";  ///< where the files go; made if need be
+    /// Paths and builtin:NAMEs; empty: the chart's own choice.
+    std::vector<std::string> scenes;
+    /// Where to look for the real scenes among the chart's own choice; none: they are left out.
+    std::optional<std::filesystem::path> scene_folder;
+    std::vector<int> resolutions;  ///< voxels a side, or pixels; empty: the chart's own choice
+    int runs = 7;                  ///< of each contender, in turn; at least 1
+    double budget_ms = 3000.0;     ///< a contender is not run again once it has taken so long at one size
+    gl::ShaderSource shaders;
+    std::function<void(double)> progress;  ///< called with the share done, in [0, 1]; may be empty
+};
+
+struct Chart {
+    Table table;
+    std::vector<std::filesystem::path> files;  ///< written
+    std::vector<std::string> notes;            ///< what was left out, and why
+};
+
+/// A measurement by its name, "voxelize" for instance.
+struct ChartKind {
+    std::string_view name;
+    std::string_view description;
+    Chart (*draw)(const ChartOptions& options);
+};
+[[nodiscard]] std::span<const ChartKind> charts();
+
+/// Every voxelization method and its peers, by time and by error against the exact voxels: voxelize.csv and
+/// voxelize.png. Needs a current context. @throws Error as loading, voxelizing and writing do.
+[[nodiscard]] Chart chart_voxelize(const ChartOptions& options);
+
+/// A converged frame with hard shadows beside Embree's single rays: render.csv. Needs a current context.
+[[nodiscard]] Chart chart_render(const ChartOptions& options);
+
+/// Writes `folder`/`name`, and adds it to the chart's files.
+void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+                const std::string& text);
+
+}  // namespace cairn::bench

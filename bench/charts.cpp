@@ -1,0 +1,29 @@
+#include <array>
+
+#include "base/error.h"
+#include "base/output_file.h"
+#include "bench/chart.h"
+
+namespace cairn::bench {
+
+std::span<const ChartKind> charts() {
+    static constexpr std::array all = {
+        ChartKind{"voxelize", "methods and their peers, by time and error", chart_voxelize},
+        ChartKind{"render", "frames with hard shadows beside Embree's rays", chart_render},
+    };
+    return all;
+}
+
+void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+                const std::string& text) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (failed) throw Error(Fault::usage, folder.string(), failed.message(), "choose a folder to write to");
+    const std::filesystem::path path = folder / name;
+    OutputFile file(path);
+    file.write(text.data(), text.size());
+    file.commit();
+    chart.files.push_back(path);
+}
+
+}  // namespace cairn::bench

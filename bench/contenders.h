@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gl/shader_source.h"
+#include "voxelizer/bit_grid.h"
+#include "voxelizer/grid.h"
+#include "voxelizer/surface.h"
+
+namespace cairn::bench {
+
+/// The surface at one resolution, and where its results go.
+struct Trial {
+    const voxelizer::Surface& surface;
+    const voxelizer::GpuSurface& on_gpu;
+    voxelizer::Region region;
+};
+
+/// Something that turns triangles into voxels, or only draws them.
+struct Contender {
+    std::string name;
+    std::string driver;
+    /// Voxelizes once. @param voxels  receives the result if not null. @return milliseconds of the work
+    /// alone: no upload, no read-back, no allocation of what can be kept.
+    std::function<double(voxelizer::BitGrid* voxels)> run;
+    bool finds_voxels = true;
+};
+
+/// Makes one at a trial; kept apart so that compiled programs outlive a trial.
+class Contenders {
+public:
+    explicit Contenders(const gl::ShaderSource& shaders);
+    ~Contenders();
+    Contenders(const Contenders&) = delete;
+    Contenders& operator=(const Contenders&) = delete;
+
+    /// All of them, at one trial, which must outlive what is returned: every method of the voxelizer, plain
+    /// rasterization, and the peers on the CPU.
+    [[nodiscard]] std::vector<Contender> at(const Trial& trial) const;
+
+    /// The pyramid of finished voxels: milliseconds of all coarser levels.
+    [[nodiscard]] double pyramid_ms(const voxelizer::BitGrid& voxels) const;
+
+    /// What cannot take part in this build, in words; one a line.
+    [[nodiscard]] static std::vector<std::string> absent();
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+constexpr const char* cpu_row_span_name = "cpu-row-span";
+
+}  // namespace cairn::bench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/handle.h"
+#include "gl/program.h"
+#include "voxelizer/surface.h"
+
+namespace cairn::bench {
+
+/// Draws all triangles along x, y and z, orthographically, with nothing written: depth test, culling and
+/// colour writes are off, and the framebuffer has one attachment of eight bits. It finds no voxel: the time
+/// is what any method by rasterization (Forest et al. 2009, Table 1) cannot get under.
+class ThreeDirections {
+public:
+    /// @throws Error (Fault::context) when the driver takes none of it.
+    ThreeDirections(const voxelizer::Surface& surface, int resolution);
+
+    /// Milliseconds from an idle driver to an idle driver.
+    [[nodiscard]] double draw() const;
+
+private:
+    struct Draw {
+        gl::Buffer positions;
+        gl::Buffer indices;
+        GLsizei count;
+    };
+
+    int resolution_;
+    std::vector<Draw> draws_;
+    gl::TextureHandle target_;
+    gl::FramebufferHandle framebuffer_;
+    gl::VertexArrayHandle vertices_;
+    gl::Program program_;
+};
+
+}  // namespace cairn::bench
