@@ -16,8 +16,8 @@
 namespace cairn::voxelizer {
 namespace {
 
-/// How many rows of a large triangle a thread may have: its loops over rows and words stay far from the limit
-/// that VOXEL_REGION_SIDE tells of.
+/// How many rows of a shared triangle a thread may have: its loops over rows and words stay far from the
+/// limit that VOXEL_REGION_SIDE tells of.
 unsigned thread_rows(const Region& region) {
     return unsigned(std::clamp(VOXEL_REGION_SIDE / (region.size.x / 32 + 4), 1, VOXEL_THREAD_ROWS));
 }
@@ -39,24 +39,34 @@ void ConservativeVoxelizer::mark_doubtful(const Region& region, unsigned count) 
     gl::dispatch_threads(count, VOXEL_GROUP);
 }
 
-/// A huge triangle gets as many workgroups as the region's largest may need; a dispatch is kept to a size
-/// that takes a fraction of a second, because some systems stop a driver that is busy for longer.
-void ConservativeVoxelizer::mark_queued(const Region& region, unsigned queue, unsigned count) {
-    constexpr unsigned groups_at_once = 1U << 20;
+/// Threads that share a triangle of a queue.
+unsigned ConservativeVoxelizer::threads_a_triangle(const Region& region, unsigned queue) {
+    unsigned of_class = VOXEL_SHARED_LEAST;
+    for (unsigned smaller = VOXEL_QUEUE_SHARED; smaller < queue; ++smaller)
+        of_class *= VOXEL_SHARED_FACTOR;
+    // What the region's largest triangle may need: twice the rows, because they are shared unevenly.
     const glm::uvec3 size(region.size);
-    // Twice the rows, because steps are shared unevenly.
-    const unsigned rows = 2 * (size.y * size.z + 8 * std::max(size.y, size.z));
-    const unsigned rows_a_group = thread_rows(region) * VOXEL_GROUP;
-    const unsigned slices =
-        queue == VOXEL_QUEUE_LARGE ? 1 : std::min((rows + rows_a_group - 1) / rows_a_group, 65535U);
-    const unsigned triangles_at_once = std::clamp(groups_at_once / slices, 1U, 65535U);
+    const std::size_t rows = 2 * (std::size_t(size.y) * size.z + 8 * std::max(size.y, size.z));
+    const std::size_t groups = rows / thread_rows(region) / VOXEL_GROUP + 1;
+    const auto largest = unsigned(std::min<std::size_t>(groups, 65535) * VOXEL_GROUP);
+    return queue + 1 == VOXEL_QUEUE_SHARED + VOXEL_SHARED_CLASSES ? largest : std::min(of_class, largest);
+}
+
+/// A dispatch is kept to a size that takes a fraction of a second, because some systems stop a driver that is
+/// busy for longer.
+void ConservativeVoxelizer::mark_queued(const Region& region, unsigned queue, unsigned count) {
+    constexpr unsigned threads_at_once = 1U << 26;
+    const unsigned threads = threads_a_triangle(region, queue);
+    const unsigned triangles_at_once = std::max(threads_at_once / threads, 1U);
     set_region(mark_large_, region);
     mark_large_.set("queue", queue);
-    mark_large_.set("slice_count", slices);
+    mark_large_.set("threads_a_triangle", threads);
     mark_large_.use();
     for (unsigned first = 0; first < count; first += triangles_at_once) {
+        const unsigned triangles = std::min(triangles_at_once, count - first);
         mark_large_.set("first", first);
-        glDispatchCompute(slices, std::min(triangles_at_once, count - first), 1);
+        mark_large_.set("count", triangles);
+        gl::dispatch_threads(std::size_t(triangles) * threads, VOXEL_GROUP);
         glFlush();
     }
 }
@@ -78,7 +88,8 @@ std::vector<MaskCandidate> ConservativeVoxelizer::mark_chunk(const Region& regio
         std::array<std::uint32_t, VOXEL_QUEUE_COUNT> counts{};
         queue_.read(0, counts.data(), sizeof(counts));
         if (counts[VOXEL_QUEUE_DOUBT] > 0) mark_doubtful(region, counts[VOXEL_QUEUE_DOUBT]);
-        for (const unsigned queue : {VOXEL_QUEUE_LARGE, VOXEL_QUEUE_HUGE}) {
+        for (unsigned queue = VOXEL_QUEUE_SHARED; queue < VOXEL_QUEUE_SHARED + VOXEL_SHARED_CLASSES;
+             ++queue) {
             if (counts[queue] > 0) mark_queued(region, queue, counts[queue]);
         }
         for (const unsigned queue : {VOXEL_QUEUE_MASKED_SMALL, VOXEL_QUEUE_MASKED_LARGE}) {

@@ -14,18 +14,22 @@
 // The voxelizer marks so many triangles in one pass: bounds its queues and the time of a dispatch.
 #define VOXEL_BATCH_TRIANGLES 262144
 #define VOXEL_CANDIDATES 1048576  // voxels of masked triangles at a time
-// Triangles of at most so many rows are marked by the thread that meets them; others wait in a queue for a workgroup, or
-// for many where a thread of one would have more than VOXEL_THREAD_ROWS.
+// Triangles of at most VOXEL_SMALL_ROWS rows are marked by the thread that meets them. Others wait in queues, and are shared
+// by more threads the more rows they have, so that each has about VOXEL_THREAD_ROWS.
 #define VOXEL_SMALL_ROWS 64
 #define VOXEL_THREAD_ROWS 64
 #define VOXEL_GROUP 64
-#define VOXEL_QUEUE_LARGE 0
-#define VOXEL_QUEUE_HUGE 1
-#define VOXEL_QUEUE_MASKED_SMALL 2  // those that a mask cuts, with a box of at most so many voxels
+// The first of VOXEL_SHARED_CLASSES queues: a triangle of class c is shared by VOXEL_SHARED_LEAST * VOXEL_SHARED_FACTOR^c
+// threads, of the last class by as many as the region's largest may need.
+#define VOXEL_QUEUE_SHARED 0
+#define VOXEL_SHARED_CLASSES 6
+#define VOXEL_SHARED_LEAST 8
+#define VOXEL_SHARED_FACTOR 4
+#define VOXEL_QUEUE_MASKED_SMALL 6  // those that a mask cuts, with a box of at most so many voxels
 #define VOXEL_MASKED_SMALL_BOX 4096
-#define VOXEL_QUEUE_MASKED_LARGE 3
-#define VOXEL_QUEUE_DOUBT 4  // those of few rows that the float filter could not decide
-#define VOXEL_QUEUE_COUNT 5
+#define VOXEL_QUEUE_MASKED_LARGE 7
+#define VOXEL_QUEUE_DOUBT 8  // those of few rows that the float filter could not decide
+#define VOXEL_QUEUE_COUNT 9
 // llvmpipe ends every loop of an invocation once they have turned 65535 times in all, and says nothing. Two limits keep
 // well under it: voxels along an axis of a region, and steps to decide about one voxel of a masked triangle.
 #define VOXEL_REGION_SIDE 16384

@@ -1,5 +1,5 @@
-// Workgroups share a queued triangle: slice_count of them. The threads of all of them share its steps (row_steps.glsl), and,
-// where there are more threads than steps, the rows of a step.
+// Threads share a queued triangle: threads_a_triangle of them share its steps (row_steps.glsl), and, where there are more
+// threads than steps, the rows of a step.
 #include "voxelize/bits.glsl"
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
@@ -10,8 +10,9 @@ layout(local_size_x = VOXEL_GROUP) in;
 
 uniform int voxel_shift;
 uniform uint queue;
-uniform uint first;        // place in the queue
-uniform uint slice_count;
+uniform uint first;               // place in the queue
+uniform uint count;               // of triangles
+uniform uint threads_a_triangle;  // a multiple or a part of a workgroup's
 
 // Rows that the filter leaves in doubt are decided some at a time: lanes run in lockstep, and doubles for one would cost
 // all of them dearly at every turn.
@@ -19,13 +20,16 @@ uniform uint slice_count;
 ivec2 doubts[DOUBT_CAPACITY];
 
 void main() {
-    const uint triangle = queued(queue, first + gl_WorkGroupID.y);
+    const uint invocation = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint place = invocation / threads_a_triangle;
+    if (place >= count) return;
+    const uint triangle = queued(queue, first + place);
     const uvec4 corners = surface_triangles[triangle].vertices_material;
     const ExactTriangle t = exact_triangle(surface_position(corners.x), surface_position(corners.y),
                                            surface_position(corners.z), voxel_shift);
     const RowSteps steps = row_steps(t, low_in_region(t), high_in_region(t));
-    const int thread_count = int(slice_count) * VOXEL_GROUP;
-    const int thread = int(gl_WorkGroupID.x) * VOXEL_GROUP + int(gl_LocalInvocationID.x);
+    const int thread_count = int(threads_a_triangle);
+    const int thread = int(invocation % threads_a_triangle);
     const int threads_a_step = max(thread_count / steps.count, 1);
     const int share = thread / steps.count;
     if (share >= threads_a_step) return;

@@ -18,7 +18,19 @@ uniform uint count;
 layout(std430, binding = SSBO_VOXEL_SUBSET) restrict readonly buffer VoxelSubset { uint voxel_subset[]; };
 uniform uint first;  // triangle, or place in the subset
 uniform int has_subset;
-uniform int thread_rows;  // of large triangles, at most
+uniform int thread_rows;  // of a triangle that threads share, about
+
+// The class of a triangle that threads share; for twice the rows, because they are shared unevenly.
+uint shared_queue(RowSteps steps) {
+    const float threads = 2.0 * float(steps.count) * float(steps.most_rows) / float(thread_rows);
+    uint queue = VOXEL_QUEUE_SHARED;
+    float most = float(VOXEL_SHARED_LEAST);
+    for (int larger = 1; larger < VOXEL_SHARED_CLASSES; ++larger) {
+        if (threads > most) ++queue;
+        most *= float(VOXEL_SHARED_FACTOR);
+    }
+    return queue;
+}
 
 // Whether the triangle is left to a later pass; `size`: of its bounding box in the region.
 bool enqueue_if_not_small(ExactTriangle t, uint triangle, uint material, ivec3 size) {
@@ -29,9 +41,7 @@ bool enqueue_if_not_small(ExactTriangle t, uint triangle, uint material, ivec3 s
         return true;
     }
     if (rows <= VOXEL_SMALL_ROWS) return false;
-    const RowSteps steps = row_steps(t, low_in_region(t), high_in_region(t));
-    const float rows_a_thread = ceil(float(steps.count) / float(VOXEL_GROUP)) * float(steps.most_rows);
-    enqueue(rows_a_thread > float(thread_rows) ? VOXEL_QUEUE_HUGE : VOXEL_QUEUE_LARGE, triangle);
+    enqueue(shared_queue(row_steps(t, low_in_region(t), high_in_region(t))), triangle);
     return true;
 }
 

@@ -20,7 +20,7 @@
 #include "interop/config.h"
 #include "voxelize/slice_inputs.glsl"
 #if MASKED
-#include "produce/surface_color.glsl"
+#include "voxelize/surface_color.glsl"
 #include "voxelize/raster_lists.glsl"
 #include "voxelize/surface.glsl"
 #endif
