@@ -95,7 +95,6 @@ public:
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 vertices[corner] = primitive_.indices[first + std::min(corner, corners - 1)];
             }
-            if (mirrored_) std::swap(vertices[1], vertices[2]);
             add(vertices);
         }
         for (const glm::u8vec4& color : primitive_.colors) {
@@ -105,7 +104,10 @@ public:
     }
 
 private:
-    void add(const std::array<std::uint32_t, 3>& vertices) {
+    /// @param item_vertices  numbered in this order, whatever their front
+    void add(const std::array<std::uint32_t, 3>& item_vertices) {
+        std::array<std::uint32_t, 3> vertices = item_vertices;
+        if (mirrored_) std::swap(vertices[1], vertices[2]);
         const glm::i64vec3 a = lattice(vertices[0]);
         const glm::i64vec3 b = lattice(vertices[1]);
         const glm::i64vec3 c = lattice(vertices[2]);
@@ -129,6 +131,8 @@ private:
         part_.has_mask = part_.has_mask || shown == Shown::cut;
         const std::uint32_t material = materials_.number(primitive_.material, shown);
         if (on_lattice_range(a) && on_lattice_range(b) && on_lattice_range(c)) {
+            for (const std::uint32_t vertex : item_vertices)
+                (void)number(vertex);
             part_.mesh.triangles.push_back(
                 {{number(vertices[0]), number(vertices[1]), number(vertices[2]), material}});
         } else {
@@ -200,8 +204,11 @@ void append(Surface& surface, const SurfaceChunk& part) {
         numbers.assign(part.positions.size(), -1);
         for (; first < last; ++first) {
             interop::SurfaceTriangle triangle = part.triangles[first];
-            for (int corner = 0; corner < 3; ++corner) {
-                std::uint32_t& vertex = triangle.vertices_material[corner];
+            // Numbered as in the part, so that a vertex's number does not depend on where the front is.
+            std::array<std::uint32_t, 3> in_order = {
+                triangle.vertices_material.x, triangle.vertices_material.y, triangle.vertices_material.z};
+            std::ranges::sort(in_order);
+            for (const std::uint32_t vertex : in_order) {
                 std::int32_t& number = numbers[vertex];
                 if (number < 0) {
                     number = std::int32_t(chunk.positions.size());
@@ -209,7 +216,10 @@ void append(Surface& surface, const SurfaceChunk& part) {
                     if (!part.attributes.empty()) chunk.attributes.push_back(part.attributes[vertex]);
                     if (!part.sources.empty()) chunk.sources.push_back(part.sources[vertex]);
                 }
-                vertex = std::uint32_t(number);
+            }
+            for (int corner = 0; corner < 3; ++corner) {
+                std::uint32_t& vertex = triangle.vertices_material[corner];
+                vertex = std::uint32_t(numbers[vertex]);
             }
             chunk.triangles.push_back(triangle);
         }
