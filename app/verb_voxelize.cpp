@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 struct Options {
     VoxelizationOptions voxelization;
     std::optional<fs::path> output;
+    bool solid = false;
+    bool plain = false;
 };
 
 void add_options(CLI::App& verb, Options& options) {
@@ -34,6 +36,16 @@ void add_options(CLI::App& verb, Options& options) {
                       fmt::format("write the voxels, as the ending says:\n{};\n.npy holds uint8 of shape "
                                   "(X, Y, Z), a[x, y, z],\n1 = occupied",
                                   fmt::join(voxelizer::voxel_file_endings(), ", ")));
+    add_parsed_option(verb, "--fill", "NAME",
+                      "surface: only voxels that the surface touches (default);\nsolid: what closed parts "
+                      "enclose, too",
+                      [&options](const std::string& name) {
+                          if (name != "surface" && name != "solid")
+                              throw Error(Fault::usage, "--fill", fmt::format("there is no \"{}\"", name),
+                                          "choose surface or solid");
+                          options.solid = name == "solid";
+                      });
+    verb.add_flag("--plain", options.plain, "no colours and no normals in the file: much faster");
     add_voxelization_options(verb, options.voxelization);
 }
 
@@ -93,8 +105,9 @@ ExitCode run(const Options& options) {
     const Interrupt interrupt;  // before there is a file to clean up
     std::unique_ptr<voxelizer::VoxelWriter> writer;
     if (options.output) writer = make_writer(*options.output, scene.grid);
-    Voxelization voxelization(options.voxelization, std::move(scene),
-                              {.attributes = writer && writer->wants_attributes()});
+    Voxelization voxelization(
+        options.voxelization, std::move(scene),
+        {.attributes = writer && writer->wants_attributes() && !options.plain, .solid = options.solid});
     const double write_ms = voxelize(voxelization, writer.get(), options.voxelization.common.report.quiet);
     voxelization.report(report);
     if (options.output) {

@@ -2,9 +2,13 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/progress.h"
+#include "app/terminal.h"
+#include "voxelizer/solid_tiles.h"
 
 namespace cairn::app {
 
@@ -30,11 +34,13 @@ Voxelization::Voxelization(const VoxelizationOptions& options, GriddedInput scen
     const Progress progress("preparing", options.common.report.quiet);
     Stopwatch watch;
     surface_ = voxelizer::build_surface(scene.input.scene, scene.input.snapshot, grid_,
-                                        {.attributes = needs.attributes});
+                                        {.attributes = needs.attributes, .outside = needs.solid});
     scene.input = {};  // what follows needs the memory
     triangle_count_ = surface_->triangle_count;
     index_.emplace(*surface_);
     surface_ms_ = watch.lap_ms();
+    if (needs.solid) build_fill();
+    fill_ms_ = watch.lap_ms();
     driver_.emplace(options.common.driver);
     context_ms_ = watch.lap_ms();
     on_gpu_ = voxelizer::upload(*surface_);
@@ -42,6 +48,15 @@ Voxelization::Voxelization(const VoxelizationOptions& options, GriddedInput scen
     if (!needs.surface) surface_.reset();
     voxelizer_ = voxelizer::make_voxelizer(options.method, options.common.driver.shaders);
     if (needs.attributes) attributes_.emplace(options.common.driver.shaders);
+}
+
+void Voxelization::build_fill() {
+    fill_.emplace(*surface_, voxelizer::whole(grid_));
+    if (fill_->doubtful_rows() == 0 || options_.common.report.quiet) return;
+    warn(
+        fmt::format("the surface is not closed, or not turned one way, along {} of {} rows of voxels: there "
+                    "only what rows along other axes agree on was filled",
+                    fill_->doubtful_rows(), fill_->row_count()));
 }
 
 void Voxelization::add_attributes(voxelizer::VoxelTile& tile) {
@@ -53,13 +68,20 @@ void Voxelization::add_attributes(voxelizer::VoxelTile& tile) {
 }
 
 void Voxelization::run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress) {
+    voxelizer::TileSink with_attributes = [&](voxelizer::VoxelTile&& tile) {
+        add_attributes(tile);
+        sink(std::move(tile));
+    };
+    std::optional<voxelizer::SolidTiles> solid;
+    if (fill_) solid.emplace(*fill_, grid_, with_attributes);
     statistics_ = voxelizer::voxelize_tiles(
         *voxelizer_, on_gpu_, *index_, grid_,
-        [&](voxelizer::VoxelTile&& tile) {
-            add_attributes(tile);
-            sink(std::move(tile));
-        },
+        solid ? [&](voxelizer::VoxelTile&& tile) { solid->add(std::move(tile)); } : with_attributes,
         [&progress](double share) { return !Interrupt::asked() && progress(share); }, {.warm_up = true});
+    if (solid) {
+        solid->finish();
+        statistics_.occupied = solid->occupied();
+    }
     driver_->check();
 }
 
@@ -73,6 +95,10 @@ void Voxelization::report(Report& report) const {
     report.add("occupied", statistics_.occupied);
     report.add("milliseconds", statistics_.milliseconds);
     report.add("regions", statistics_.regions);
+    if (fill_) {
+        report.add("fill_ms", fill_ms_);
+        report.add("doubtful_rows", fill_->doubtful_rows());
+    }
     if (attributes_) report.add("attributes_ms", attributes_ms_);
     report.add("load_ms", load_ms_);
     report.add("surface_ms", surface_ms_);

@@ -7,6 +7,7 @@
 #include "app/options.h"
 #include "app/report.h"
 #include "app/scene_input.h"
+#include "voxelizer/fill.h"
 #include "voxelizer/grid.h"
 #include "voxelizer/surface.h"
 #include "voxelizer/triangle_index.h"
@@ -39,6 +40,7 @@ public:
     struct Needs {
         bool attributes = false;  ///< tiles come with colours and normals
         bool surface = false;     ///< surface() when all is on the GPU
+        bool solid = false;       ///< what closed parts enclose, too
     };
     /// Frees the scene.
     Voxelization(const VoxelizationOptions& options, GriddedInput scene, const Needs& needs);
@@ -54,6 +56,7 @@ public:
 
 private:
     void add_attributes(voxelizer::VoxelTile& tile);
+    void build_fill();
 
     VoxelizationOptions options_;
     voxelizer::Grid grid_;
@@ -63,6 +66,8 @@ private:
     double upload_ms_ = 0.0;
     std::optional<voxelizer::Surface> surface_;
     std::uint64_t triangle_count_ = 0;
+    std::optional<voxelizer::SolidFill> fill_;
+    double fill_ms_ = 0.0;
     std::optional<voxelizer::TriangleIndex> index_;
     std::optional<Driver> driver_;
     voxelizer::GpuSurface on_gpu_;

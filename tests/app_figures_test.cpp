@@ -271,6 +271,28 @@ TEST(AppVoxelize, EveryFormatIsWrittenFromTheCommandLine) {
     }
 }
 
+TEST(AppVoxelize, SolidFillsWhatIsClosedAndWarnsOfWhatIsNot) {
+    // The knot's tube is closed; the Cornell box is five open walls and two closed blocks.
+    const Json shell = cairn_json({"voxelize", "builtin:knot", "-r", "150,140,280"});
+    const Json solid = cairn_json({"voxelize", "builtin:knot", "-r", "150,140,280", "--fill", "solid"});
+    EXPECT_EQ(solid["doubtful_rows"], 0);
+    EXPECT_GT(solid["occupied"], 2 * int(shell["occupied"]));
+    const Answer open = cairn({"voxelize", "builtin:cornell", "-r", "64", "--fill", "solid", "--json", "-"});
+    EXPECT_EQ(open.code, 0) << open;
+    EXPECT_NE(open.err.find("rows of voxels"), std::string::npos) << open;
+    EXPECT_GT(open.json()["doubtful_rows"], 0) << open;
+}
+
+TEST(AppVoxelize, PlainFilesHaveNoAttributes) {
+    const ScratchFolder folder;
+    const std::string file = folder.file("plain.vdb");
+    const Answer answer =
+        cairn({"voxelize", "builtin:cornell", "-r", "64", "--plain", "-o", file, "--json", "-"});
+    EXPECT_EQ(answer.code, 0) << answer;
+    EXPECT_FALSE(answer.json().contains("attributes_ms")) << answer;
+    EXPECT_GT(std::filesystem::file_size(file), 1000U);
+}
+
 TEST(AppVoxelize, VoxelSizeIsTheSizeAsked) {
     const Json around = cairn_json({"voxelize", "builtin:cornell", "--voxel-size", "0.25"});
     EXPECT_EQ(around["voxel_size"], 0.25);

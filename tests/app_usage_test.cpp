@@ -132,6 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "Y0 = 2 is not less than Y1 = 1"},
                       Wrong{voxelize({"-r", "8", "--method", "cubes"}),
                             "choose one of: conservative, slice-map, three-axis, three-axis-conservative"},
+                      Wrong{voxelize({"-r", "8", "--fill", "half"}), "choose surface or solid"},
                       Wrong{voxelize({"-r", "8", "--context", "vulkan"}), "auto, osmesa or egl"},
                       Wrong{voxelize({"-r", "8", "--shader-dir", "/nowhere"}), "is not a folder"},
                       Wrong{voxelize({"-r", "8", "-o", "voxels.ply"}), "what this verb writes ends in .npy"},

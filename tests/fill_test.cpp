@@ -217,6 +217,41 @@ TEST(SolidFill, OfAnOpenSheetIsNothing) {
     EXPECT_EQ(interior(fill, region).count(), 0U);
 }
 
+TEST(SolidFill, OfTwoSheetsThatFaceEachOtherIsNothing) {
+    const std::int64_t s = lattice_side;
+    const Region region = cube(5);
+    const auto square = [s](std::int64_t x) {
+        return Mesh{{glm::i64vec3(x, 0, 0), {x, s, 0}, {x, s, s}},
+                    {glm::i64vec3(x, 0, 0), {x, s, s}, {x, 0, s}}};
+    };
+    Mesh mesh = square(3 * s / 4);
+    for (const LatticeTriangle& t : square(s / 4))
+        mesh.push_back(turned(t));
+    const SolidFill fill(lattice_surface(mesh, 32), region);
+    EXPECT_FALSE(fill.closed());
+    EXPECT_EQ(interior(fill, region).count(), 0U);
+}
+
+TEST(SolidFill, OfABoxWithoutALidIsThatOfTheBox) {
+    Random random(19);
+    const Region region = cube(5);
+    const glm::i64vec3 low(lattice_side / 5);
+    const glm::i64vec3 high(lattice_side * 3 / 4);
+    const Mesh whole = box(low, high, random);
+    EXPECT_TRUE(SolidFill(lattice_surface(whole, 32), region).closed());
+    for (int axis = 0; axis < 3; ++axis) {
+        Mesh mesh = whole;
+        std::erase_if(mesh, [&](const LatticeTriangle& t) {
+            return t[0][axis] == high[axis] && t[1][axis] == high[axis] && t[2][axis] == high[axis];
+        });
+        ASSERT_LT(mesh.size(), whole.size());
+        const SolidFill fill(lattice_surface(mesh, 32), region);
+        EXPECT_FALSE(fill.closed());
+        EXPECT_GT(fill.doubtful_rows(), 0U) << "axis " << axis;
+        EXPECT_TRUE(same_bits(interior(fill, region), interior(whole, region))) << "axis " << axis;
+    }
+}
+
 /// The voxels that a triangle's box reaches.
 bool in_box_of(const LatticeTriangle& t, const Region& region, const glm::ivec3& voxel) {
     const glm::dvec3 c = centre_of(region, voxel);

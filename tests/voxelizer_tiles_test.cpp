@@ -10,6 +10,7 @@
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
 #include "voxelizer/conservative_voxelizer.h"
+#include "voxelizer/solid_tiles.h"
 #include "voxelizer/voxelize_tiles.h"
 
 namespace cairn::voxelizer {
@@ -96,6 +97,32 @@ TEST_F(TilesTest, OfAnySizeAndShapeHaveTheBitsOfTheWhole) {
     for (const glm::ivec3& shape : shapes) {
         const Surface surface = build_surface(scene, snapshot, grid_around(snapshot.bounds, shape));
         EXPECT_GT(expect_as_whole(surface, to_string(shape)).occupied, 0U);
+    }
+}
+
+TEST_F(TilesTest, FilledSolidHaveTheBitsOfTheWholeFilled) {
+    const scenes::Scene scene = scenes::make_builtin("knot");
+    const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
+    for (const glm::ivec3& shape : shapes) {
+        const Surface surface =
+            build_surface(scene, snapshot, grid_around(snapshot.bounds, shape), {.outside = true});
+        const SolidFill fill(surface, whole(surface.grid));
+        const GpuSurface on_gpu = upload(surface);
+        BitGrid truth = voxelizer().voxelize(on_gpu, whole(surface.grid));
+        const std::uint64_t shell = truth.count();
+        fill.add_interior(glm::ivec3(0), truth);
+        TriangleIndex index(surface);
+        Collector collector(surface.grid);
+        SolidTiles solid(
+            fill, surface.grid, [&](VoxelTile&& tile) { collector.add(tile); }, side);
+        (void)voxelize_tiles(voxelizer(), on_gpu, index, surface.grid,
+                             [&](VoxelTile&& tile) { solid.add(std::move(tile)); }, {}, {.tile_side = side});
+        solid.finish();
+        EXPECT_TRUE(same_bits(collector.whole, truth)) << to_string(shape);
+        EXPECT_EQ(solid.occupied(), truth.count()) << to_string(shape);
+        if (shape == shapes[0]) {
+            EXPECT_GT(solid.occupied(), shell + 1000) << "nothing was filled";
+        }
     }
 }
 

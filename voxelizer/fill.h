@@ -23,16 +23,18 @@ namespace cairn::voxelizer {
 /// it does not matter whether a whole shell is inside out. Lines, points, and triangles that an alpha mask
 /// cuts take no part.
 ///
-/// A row whose signs do not add up to 0 is *doubtful*: it runs through a hole, across an open sheet, or
-/// across faces that are turned against their neighbours. A voxel of a doubtful row is inside only
-///   - where the rows along y and along z through it are not doubtful, and both wind around it, or
-///   - where all three rows say inside, those in doubt by parity: an even number of crossings in all, an odd
+/// A mesh is closed when each edge is used as often in one direction as in the other. Then rows along any
+/// axis say the same. Else rows along all three axes vote. One whose signs do not add up to 0 is *doubtful*:
+/// it runs through a hole, across an open sheet, or across faces that are turned against their neighbours.
+/// A voxel is inside only
+///   - where two of the rows through it are not doubtful and wind around it, or
+///   - where all three say inside, those in doubt by parity: an even number of crossings in all, an odd
 ///     number before the voxel.
-/// So an open sheet fills nothing, and a hole does not leak across the grid: at most what lies straight
-/// before it, along all three axes, stays empty. Faces that are turned around in part of a closed mesh are
-/// mended by the first rule where a row along another axis avoids them, else by the second; where rows come
-/// out whole by chance, because as many faces are turned one way as the other, gaps between parts may be
-/// filled.
+/// So an open sheet fills nothing, nor do two that face each other, and a hole does not leak across the grid:
+/// at most what lies straight before it, along two axes, stays empty. A box without a lid is filled. Faces
+/// that are turned around in part of a closed mesh are mended where rows along other axes avoid them, or by
+/// parity; where rows come out whole by chance, because as many faces are turned one way as the other, gaps
+/// between parts may be filled.
 ///
 /// Build the surface with SurfaceOptions::outside, or a grid that cuts through the scene (--bounds) has
 /// doubtful rows that are none.
@@ -51,20 +53,21 @@ public:
     /// @throws Error (Fault::usage) when it does not.
     void add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const;
 
-    /// Rows along x that are doubtful. Above 0, the mesh is not closed, or its faces are not turned one way.
+    /// Whether the mesh is closed. Decided by a sum of hashes over its edges, of 128 bits.
+    [[nodiscard]] bool closed() const { return !along_y_; }
+    /// Rows that are doubtful, along all three axes, and of how many.
     [[nodiscard]] std::uint64_t doubtful_rows() const { return doubtful_rows_; }
+    [[nodiscard]] std::uint64_t row_count() const;
     [[nodiscard]] std::size_t size_bytes() const;
 
 private:
-    /// @param voxel  from the region's low corner; of the row along x
-    [[nodiscard]] bool is_doubtful(const glm::ivec3& voxel) const;
     /// @param low  of the tile, from the region's low corner
     void fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const;
-    void fill_doubtful_rows(const glm::ivec3& low, int z, const std::vector<int>& rows, BitGrid& tile) const;
+    void vote_on_slice(const glm::ivec3& low, int z, BitGrid& tile) const;
 
     Region whole_;
     RowCrossings along_x_;
-    std::optional<RowCrossings> along_y_, along_z_;  ///< where there are doubtful rows along x
+    std::optional<RowCrossings> along_y_, along_z_;  ///< of a mesh that is not closed
     std::uint64_t doubtful_rows_ = 0;
 };
 

@@ -11,25 +11,21 @@
 
 #include "base/error.h"
 #include "voxelizer/crossed_rows.h"
+#include "voxelizer/solid_triangles.h"
 
 namespace cairn::voxelizer {
 namespace {
 
-using Wanted = std::vector<std::uint8_t>;
-
 /// Calls visit(u, v, rows) for each row that a triangle crosses.
 template <typename Int, typename Visit>
-void visit_rows(const std::array<std::array<Int, 3>, 3>& corners, const Region& region, int axis, int by_axis,
-                const Wanted& wanted, const Visit& visit) {
+void visit_rows(const std::array<std::array<Int, 3>, 3>& corners, const Region& region, int axis,
+                const Visit& visit) {
     const CrossedRows<Int> rows(corners, region, axis);
     if (rows.winding() == 0) return;
-    const bool by_v = by_axis == (axis + 2) % 3;
     for (int v = rows.first_v(); v <= rows.last_v(); ++v) {
-        if (!wanted.empty() && by_v && wanted[std::size_t(v)] == 0) continue;
         const auto interval = rows.crossed_u(v);
-        for (int u = interval.first; u <= interval.last; ++u) {
-            if (wanted.empty() || by_v || wanted[std::size_t(u)] != 0) visit(u, v, rows);
-        }
+        for (int u = interval.first; u <= interval.last; ++u)
+            visit(u, v, rows);
     }
 }
 
@@ -49,40 +45,13 @@ std::array<std::array<Int, 3>, 3> as(const std::array<glm::i64vec3, 3>& p) {
     return out;
 }
 
-/// Calls add(corners) for every triangle that takes part, side by side.
-template <typename Add>
-void for_each_triangle(const Surface& surface, const Add& add) {
-    const auto is_cut = [&surface](std::uint32_t material) {
-        return (surface.materials[material].flags >> MATERIAL_MASK_BIT & 1U) != 0;
-    };
-    for (const SurfaceChunk& chunk : surface.chunks) {
-        tbb::parallel_for(std::size_t(0), chunk.triangles.size(), [&](std::size_t i) {
-            const glm::uvec4& numbers = chunk.triangles[i].vertices_material;
-            if (is_cut(numbers.w)) return;
-            std::array<glm::i64vec3, 3> corners;
-            for (int corner = 0; corner < 3; ++corner) {
-                const auto& p = chunk.positions[numbers[corner]];
-                corners[std::size_t(corner)] = {p[0], p[1], p[2]};
-            }
-            add(corners);
-        });
-    }
-    tbb::parallel_for(std::size_t(0), surface.far_triangles.size(), [&](std::size_t i) {
-        const FarTriangle& triangle = surface.far_triangles[i];
-        if (!is_cut(triangle.material)) add(triangle.positions);
-    });
-    tbb::parallel_for(std::size_t(0), surface.outside_triangles.size(),
-                      [&](std::size_t i) { add(surface.outside_triangles[i]); });
-}
-
 template <typename Visit>
-void visit_all(const Surface& surface, const Region& region, int axis, int by_axis, const Wanted& wanted,
-               const Visit& visit) {
+void visit_all(const Surface& surface, const Region& region, int axis, const Visit& visit) {
     for_each_triangle(surface, [&](const std::array<glm::i64vec3, 3>& corners) {
         if (in_shader_range(corners)) {
-            visit_rows(as<std::int64_t>(corners), region, axis, by_axis, wanted, visit);
+            visit_rows(as<std::int64_t>(corners), region, axis, visit);
         } else {
-            visit_rows(as<Int128>(corners), region, axis, by_axis, wanted, visit);
+            visit_rows(as<Int128>(corners), region, axis, visit);
         }
     });
 }
@@ -100,8 +69,7 @@ void check_memory(double needed_bytes, std::size_t limit_bytes, const Region& re
 
 }  // namespace
 
-RowCrossings::RowCrossings(const Surface& surface, const Region& region, int axis, std::size_t memory_bytes,
-                           int by_axis, const Wanted& wanted)
+RowCrossings::RowCrossings(const Surface& surface, const Region& region, int axis, std::size_t memory_bytes)
     : u_((axis + 1) % 3), v_((axis + 2) % 3), u_size_(region.size[u_]) {
     const std::size_t row_count = std::size_t(u_size_) * std::size_t(region.size[v_]);
     const double row_bytes = double(row_count) * (sizeof(std::uint32_t) + 0.125);
@@ -109,7 +77,7 @@ RowCrossings::RowCrossings(const Surface& surface, const Region& region, int axi
     ends_.assign(row_count, 0);
     odd_.assign(row_count, false);
     // Counted first; then `ends_` holds where each row starts, and grows to where it ends.
-    visit_all(surface, region, axis, by_axis, wanted, [&](int u, int v, const auto& /*rows*/) {
+    visit_all(surface, region, axis, [&](int u, int v, const auto& /*rows*/) {
         const std::size_t row = std::size_t(v) * std::size_t(u_size_) + std::size_t(u);
         std::atomic_ref(ends_[row]).fetch_add(1, std::memory_order_relaxed);
     });
@@ -127,7 +95,7 @@ RowCrossings::RowCrossings(const Surface& surface, const Region& region, int axi
     for (std::uint32_t& end : ends_)
         next += std::exchange(end, next);
     const int length = region.size[axis];
-    visit_all(surface, region, axis, by_axis, wanted, [&](int u, int v, const auto& rows) {
+    visit_all(surface, region, axis, [&](int u, int v, const auto& rows) {
         const std::size_t row = std::size_t(v) * std::size_t(u_size_) + std::size_t(u);
         if (odd_[row]) return;
         const std::uint32_t place = std::atomic_ref(ends_[row]).fetch_add(1, std::memory_order_relaxed);

@@ -23,11 +23,9 @@ namespace cairn::voxelizer {
 class RowCrossings {
 public:
     /// @param axis          0, 1, 2: rows along x, y, z
-    /// @param wanted        one a coordinate of `by_axis`: rows elsewhere are left out; empty: all are wanted
     /// @param memory_bytes  what the crossings may take
     /// @throws Error (Fault::memory) before they take more; says what would fit.
-    RowCrossings(const Surface& surface, const Region& region, int axis, std::size_t memory_bytes,
-                 int by_axis = 0, const std::vector<std::uint8_t>& wanted = {});
+    RowCrossings(const Surface& surface, const Region& region, int axis, std::size_t memory_bytes);
 
     /// A crossing: the first voxel of the row whose centre lies beyond it, or the row's length.
     struct Event {
