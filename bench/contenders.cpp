@@ -6,7 +6,9 @@
 #include "bench/cpu_row_span.h"
 #include "bench/three_directions.h"
 #include "gl/context.h"
-#include "voxelizer/pyramid_builder.h"
+#include "voxelizer/triangle_index.h"
+#include "voxelizer/voxel_tiles.h"
+#include "voxelizer/voxelize_tiles.h"
 #include "voxelizer/voxelizer.h"
 #ifdef CAIRN_BENCH_OPENVDB
 #include "bench/openvdb_mesh.h"
@@ -23,6 +25,21 @@ Contender of_method(voxelizer::Voxelizer& voxelizer, voxelizer::Method method, c
                 voxelizer::BitGrid found = voxelizer.voxelize(trial.on_gpu, trial.region);
                 if (voxels != nullptr) *voxels = std::move(found);
                 return voxelizer.last_milliseconds();
+            }};
+}
+
+/// As the command voxelizes large grids: region by region, each from its own triangles.
+Contender by_regions(voxelizer::Voxelizer& voxelizer, voxelizer::Method method, const Trial& trial) {
+    const auto index = std::make_shared<voxelizer::TriangleIndex>(trial.surface);
+    return {std::string(voxelizer::name_of(method)), gl::driver_name(),
+            [&voxelizer, index, trial](voxelizer::BitGrid* voxels) {
+                if (voxels != nullptr) *voxels = voxelizer::BitGrid(trial.region.size);
+                return voxelizer::voxelize_tiles(voxelizer, trial.on_gpu, *index, trial.surface.grid,
+                                                 [voxels](voxelizer::VoxelTile&& tile) {
+                                                     if (voxels != nullptr)
+                                                         voxelizer::put_tile(tile, *voxels);
+                                                 })
+                    .milliseconds;
             }};
 }
 
@@ -71,12 +88,10 @@ struct Contenders::Parts {
         voxelizer::Method method;
         std::unique_ptr<voxelizer::Voxelizer> voxelizer;
     };
-    std::vector<Named> methods;
-    voxelizer::PyramidBuilder pyramid;
+    std::vector<Named> methods;  ///< conservative first
 };
 
-Contenders::Contenders(const gl::ShaderSource& shaders)
-    : parts_(new Parts{{}, voxelizer::PyramidBuilder(shaders)}) {
+Contenders::Contenders(const gl::ShaderSource& shaders) : parts_(new Parts{{}}) {
     for (const voxelizer::Method method : voxelizer::methods())
         parts_->methods.push_back({method, voxelizer::make_voxelizer(method, shaders)});
 }
@@ -84,8 +99,12 @@ Contenders::~Contenders() = default;
 
 std::vector<Contender> Contenders::at(const Trial& trial) const {
     std::vector<Contender> all;
-    for (const Parts::Named& named : parts_->methods)
-        all.push_back(of_method(*named.voxelizer, named.method, trial));
+    // The raster methods cut large grids themselves, in tiles of slices.
+    const bool is_large = voxelizer::bit_bytes(trial.region.size) > voxelizer::TileOptions{}.whole_bytes;
+    for (const Parts::Named& named : parts_->methods) {
+        const bool regions = is_large && named.method == voxelizer::Method::conservative;
+        all.push_back((regions ? by_regions : of_method)(*named.voxelizer, named.method, trial));
+    }
     all.push_back(three_directions(trial));
     all.push_back(cpu_row_span(trial));
 #ifdef CAIRN_BENCH_OPENVDB
@@ -94,11 +113,10 @@ std::vector<Contender> Contenders::at(const Trial& trial) const {
     return all;
 }
 
-double Contenders::pyramid_ms(const voxelizer::BitGrid& voxels) const {
-    const gl::Buffer bits =
-        gl::Buffer::of(std::span<const std::uint32_t>(voxels.words), "voxel bits of the chart");
-    (void)parts_->pyramid.build(bits, voxels.size);
-    return parts_->pyramid.last_milliseconds();
+double Contenders::pyramid_ms(const Trial& trial) const {
+    voxelizer::Voxelizer& conservative = *parts_->methods.front().voxelizer;
+    (void)conservative.voxelize_pyramid(trial.on_gpu, trial.region);
+    return conservative.last_pyramid_milliseconds();
 }
 
 std::vector<std::string> Contenders::absent() {

@@ -41,8 +41,8 @@ public:
     /// rasterization, and the peers on the CPU.
     [[nodiscard]] std::vector<Contender> at(const Trial& trial) const;
 
-    /// The pyramid of finished voxels: milliseconds of all coarser levels.
-    [[nodiscard]] double pyramid_ms(const voxelizer::BitGrid& voxels) const;
+    /// All coarser levels of the pyramid, right after their finest level was voxelized: milliseconds.
+    [[nodiscard]] double pyramid_ms(const Trial& trial) const;
 
     /// What cannot take part in this build, in words; one a line.
     [[nodiscard]] static std::vector<std::string> absent();

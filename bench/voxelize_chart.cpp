@@ -77,7 +77,7 @@ private:
         for (std::size_t i = 0; i < all.size(); ++i) {
             if (!results[i].samples_ms.empty()) add_row(scene, trial, all[i], results[i]);
         }
-        if (region.size.x >= smallest_pyramid) add_pyramid(scene, trial, truth);
+        if (region.size.x >= smallest_pyramid) add_pyramid(scene, trial);
     }
 
     [[nodiscard]] bool takes_too_long(const Contender& contender, const std::string& scene, int resolution) {
@@ -148,11 +148,11 @@ private:
         chart_.table.rows.push_back(std::move(row));
     }
 
-    void add_pyramid(const std::string& scene, const Trial& trial, const voxelizer::BitGrid& voxels) {
+    void add_pyramid(const std::string& scene, const Trial& trial) {
         std::vector<double> samples;
-        (void)contenders_.pyramid_ms(voxels);
+        (void)contenders_.pyramid_ms(trial);
         for (int run = 0; run < options_.runs; ++run)
-            samples.push_back(contenders_.pyramid_ms(voxels));
+            samples.push_back(contenders_.pyramid_ms(trial));
         chart_.table.rows.push_back({scene, std::int64_t(trial.region.size.x), std::string("pyramid"),
                                      std::int64_t(trial.surface.triangle_count), Cell{}, Cell{}, Cell{},
                                      Cell{}, median(samples), threads_, driver_});

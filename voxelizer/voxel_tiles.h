@@ -10,6 +10,9 @@ namespace cairn::voxelizer {
 /// The part of a whole that is one tile. @param origin  a multiple of `side`, inside; that is one of 32.
 [[nodiscard]] BitGrid tile_bits(const BitGrid& whole, const glm::ivec3& origin, int side = VOXEL_TILE_SIDE);
 
+/// Sets the bits of a tile in a whole.
+void put_tile(const VoxelTile& tile, BitGrid& whole);
+
 /// Gives a writer all tiles of a whole that hold voxels, without attributes, in the order that it wants.
 void add_tiles(VoxelWriter& writer, const BitGrid& whole);
 
