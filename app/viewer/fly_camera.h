@@ -23,6 +23,9 @@ public:
     /// @param ways  x to the right, y upwards, z ahead: 1, 0 or -1 each. Not faster when two ways join.
     void move(const glm::dvec3& ways, double seconds);
 
+    /// Puts it elsewhere, at the same speed.
+    void place(const renderer::Camera& camera) { camera_ = camera; }
+
     /// Faster, or slower where `steps` is negative.
     void change_speed(double steps);
 

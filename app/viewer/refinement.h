@@ -21,7 +21,7 @@ struct Band {
 /// First every row is rendered with what is there, then those are gone over that lack something.
 class Refinement {
 public:
-    Refinement() = default;  ///< nothing to do
+    Refinement() { view_.width = view_.height = 0; }  ///< nothing to do
     explicit Refinement(const renderer::View& view);
 
     [[nodiscard]] const renderer::View& view() const { return view_; }
@@ -49,7 +49,7 @@ private:
     void put(const renderer::Image& rows, int first_row);
     [[nodiscard]] Band& choose(const Pace& pace);
 
-    renderer::View view_{.width = 0, .height = 0};
+    renderer::View view_;
     renderer::Image image_;
     std::vector<Band> bands_;
     int next_row_ = 0;           // of the first sweep
