@@ -216,14 +216,16 @@ ExitCode run(const Options& options) {
     window->swap_and_poll();
 
     std::optional<renderer::Renderer> renderer;
+    std::optional<Viewer> viewer;
     {
         const Progress progress("preparing", quiet);
         renderer.emplace(input->scene, input->snapshot, options.view.tree, options.driver.shaders);
+        input.reset();  // the renderer has its own copy of what it needs
+        viewer.emplace(*renderer, view, size);
+        viewer->warm_up();
     }
-    input.reset();  // the renderer has its own copy of what it needs
-    Viewer viewer(*renderer, view, size);
     {
-        Explorer explorer(options, *window, viewer);
+        Explorer explorer(options, *window, *viewer);
         explorer.run();
         explorer.add_figures(report);
     }

@@ -100,6 +100,12 @@ std::optional<renderer::Light> first_light(const scenes::Snapshot& snapshot) {
     return std::nullopt;
 }
 
+/// Rounded, so that the way from degrees to radians and back ends where it began.
+double degrees_of(double radians) {
+    constexpr double steps_a_degree = 1e9;
+    return std::round(glm::degrees(radians) * steps_a_degree) / steps_a_degree;
+}
+
 /// For a POSIX shell: bare where nothing in it has a meaning there.
 std::string shell_word(const std::string& text) {
     const auto plain = [](char c) {
@@ -178,18 +184,11 @@ renderer::View view_of(const ViewOptions& options, const scenes::Snapshot& snaps
 std::string camera_text(const renderer::Camera& camera) {
     const auto& [eye, target, up, yfov] = camera;
     return fmt::format("{},{},{},{},{},{},{}", eye.x, eye.y, eye.z, target.x, target.y, target.z,
-                       glm::degrees(yfov));
+                       degrees_of(yfov));
 }
 
 renderer::Camera snapped(const renderer::Camera& camera) {
-    // Degrees to radians and back may each round: a few turns find an angle that survives both.
-    renderer::Camera found = camera_of(camera_text(camera));
-    for (int turn = 0; turn < 4; ++turn) {
-        const renderer::Camera again = camera_of(camera_text(found));
-        if (again.yfov == found.yfov) break;
-        found = again;
-    }
-    return found;
+    return camera_of(camera_text(camera));
 }
 
 std::string render_command(const SceneOptions& scene, const ViewOptions& options, const renderer::View& view,

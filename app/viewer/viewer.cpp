@@ -55,6 +55,14 @@ const renderer::Camera& Viewer::camera() const {
     return flying_ ? fly_.camera() : orbit_.camera();
 }
 
+void Viewer::warm_up() {
+    renderer::View small = scaled(view_, 0.0);
+    for (const renderer::Show show : {renderer::Show::levels, renderer::Show::surface}) {
+        small.show = show;
+        (void)renderer_.render_within(small, 0.0);
+    }
+}
+
 void Viewer::command(Command command) {
     const renderer::View before = view_;
     switch (command) {

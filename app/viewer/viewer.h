@@ -42,6 +42,9 @@ public:
     /// @param scene_size  the diagonal of the scene, world units, > 0.
     Viewer(renderer::Renderer& renderer, const renderer::View& view, double scene_size);
 
+    /// Renders a few pixels of every kind, so that no shader is compiled while somebody waits for a frame.
+    void warm_up();
+
     void command(Command command);
     /// A mouse drag, in heights of the window: x to the right, y downwards.
     void drag_left(const glm::dvec2& moved);   ///< orbits, or looks around
