@@ -154,7 +154,7 @@ private:
         if (view.pixel_error != renderer::View{}.pixel_error)
             text += fmt::format("   voxels of {:.2g} pixels", view.pixel_error);
         if (viewer_.flying()) text += fmt::format("   flying, {:.3g} a second", viewer_.fly_speed());
-        return text + "   F1: help";
+        return text;
     }
 
     /// Writes a picture that has come to its end, and says how to make it again.
@@ -207,8 +207,8 @@ ExitCode run(const Options& options) {
     const renderer::View view = view_of(options.view, input->snapshot);
     const double size = scene_size(input->snapshot.bounds);
 
-    const std::unique_ptr<gl::Window> window =
-        gl::create_window("cairn view " + options.scene.scene, {view.width, view.height}, wants_debugging());
+    const std::unique_ptr<gl::Window> window = gl::create_window(
+        "cairn view " + options.scene.scene + " (F1: help)", {view.width, view.height}, wants_debugging());
     glfwSwapInterval(1);
     // Set-up may take a while: until then the window shows the background of the scene.
     glClearColor(0.906F, 0.925F, 0.957F, 1.0F);

@@ -231,11 +231,9 @@ std::string Viewer::statistics_line() const {
     } else if (is_growing) {
         state = fmt::format("refining {:.0f}%", 100.0 * growing_.share_done());
     }
-    return fmt::format(
-        "{:.0f} ms   {} x {} at {:.0f}%   bricks {} of {} ({:.0f}%), produced {}   {}", now.milliseconds,
-        view_.width, view_.height, 100.0 * width / view_.width, now.bricks_resident, now.brick_slots,
-        100.0 * double(now.bricks_resident) / double(std::max<std::uint64_t>(now.brick_slots, 1)),
-        bricks_produced_, state);
+    return fmt::format("{:.0f} ms   {}x{} at {:.0f}%   {} of {} bricks, {} produced   {}", now.milliseconds,
+                       view_.width, view_.height, 100.0 * width / view_.width, now.bricks_resident,
+                       now.brick_slots, bricks_produced_, state);
 }
 
 }  // namespace cairn::app
