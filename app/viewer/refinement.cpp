@@ -42,7 +42,9 @@ double Refinement::share_done() const {
     return double(rows) / view_.height;
 }
 
-/// The next rows of the first sweep, then the next band that lacks something; cut where it would take long.
+/// The next rows of the first sweep, then the first band that lacks something, until nothing more can be done
+/// for it: where the pools hold one band but not all, turns would make the bands evict each other's bricks. A
+/// band is cut where it would take long.
 Band& Refinement::choose(const Pace& pace) {
     const int rows = rows_at(pace, view_.width);
     if (!complete()) {
@@ -51,16 +53,15 @@ Band& Refinement::choose(const Pace& pace) {
         next_row_ += count;
         return bands_.back();
     }
-    while (bands_[next_band_ % bands_.size()].converged || bands_[next_band_ % bands_.size()].stuck)
+    while (bands_[next_band_].converged || bands_[next_band_].stuck)
         ++next_band_;
-    next_band_ %= bands_.size();
     Band& band = bands_[next_band_];
     if (band.rows.count >= 2 * rows) {
         const Band rest{{band.rows.first + rows, band.rows.count - rows}};
         band.rows.count = rows;
         bands_.insert(bands_.begin() + std::ptrdiff_t(next_band_) + 1, rest);
     }
-    return bands_[next_band_++];
+    return bands_[next_band_];
 }
 
 void Refinement::step(renderer::Renderer& renderer, Pace& pace) {

@@ -53,7 +53,7 @@ private:
     renderer::Image image_;
     std::vector<Band> bands_;
     int next_row_ = 0;           // of the first sweep
-    std::size_t next_band_ = 0;  // of the later ones
+    std::size_t next_band_ = 0;  // where it is refined
 };
 
 }  // namespace cairn::app
