@@ -9,7 +9,6 @@
 #include "base/error.h"
 
 namespace cairn::app {
-namespace {
 
 bool wants_debugging() {
 #ifdef NDEBUG
@@ -19,7 +18,13 @@ bool wants_debugging() {
 #endif
 }
 
-}  // namespace
+void check_debug_log(gl::Context& context) {
+    const std::vector<std::string> messages = context.debug_log().take();
+    if (messages.empty()) return;
+    throw Error(Fault::context, gl::driver_name(),
+                fmt::format("OpenGL reported {}", fmt::join(messages, "; ")),
+                "a fault of cairn or of the driver: please report it");
+}
 
 Driver::Driver(const DriverOptions& options)
     : context_(gl::create_context({.kind = options.context, .debug = wants_debugging()})) {}
@@ -33,11 +38,7 @@ std::string Driver::backend() const {
 }
 
 void Driver::check() const {
-    const std::vector<std::string> messages = context_->debug_log().take();
-    if (messages.empty()) return;
-    throw Error(Fault::context, gl::driver_name(),
-                fmt::format("OpenGL reported {}", fmt::join(messages, "; ")),
-                "a fault of cairn or of the driver: please report it");
+    check_debug_log(*context_);
 }
 
 }  // namespace cairn::app

@@ -8,6 +8,12 @@
 
 namespace cairn::app {
 
+/// KHR_debug is to listen: in debug builds, and where the environment holds CAIRN_GL_DEBUG.
+[[nodiscard]] bool wants_debugging();
+
+/// @throws Error (Fault::context) when KHR_debug heard of an error or of undefined behaviour: a bug of ours.
+void check_debug_log(gl::Context& context);
+
 /// The OpenGL context of a verb. In debug builds, and where the environment holds CAIRN_GL_DEBUG, KHR_debug
 /// listens.
 class Driver {

@@ -57,6 +57,7 @@ ExitCode run(int argc, char** argv) {
     add_voxelize(command, chosen);
     add_check(command, chosen);
     add_render(command, chosen);
+    add_view(command, chosen);
     add_export(command, chosen);
     add_bench(command, chosen);
     command.require_subcommand(0, 1);

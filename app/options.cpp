@@ -103,6 +103,10 @@ void add_driver_options(CLI::App& verb, DriverOptions& options) {
     add_parsed_option(verb, "--context", "auto|osmesa|egl", "where OpenGL comes from (default: auto)",
                       [&options](const std::string& text) { options.context = context_named(text); })
         ->group(common_group);
+    add_shader_option(verb, options);
+}
+
+void add_shader_option(CLI::App& verb, DriverOptions& options) {
     add_parsed_option(verb, "--shader-dir", "DIR", "read the shaders from a folder, not the built-in copies",
                       [&options](const std::string& text) { options.shaders = shaders_in(text); })
         ->group(common_group);

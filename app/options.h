@@ -41,6 +41,7 @@ struct DriverOptions {
     gl::ShaderSource shaders;
 };
 void add_driver_options(CLI::App& verb, DriverOptions& options);
+void add_shader_option(CLI::App& verb, DriverOptions& options);  ///< of those, for a verb with a window
 
 /// The options that every verb that reads a scene at a moment understands.
 struct CommonOptions {

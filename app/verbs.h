@@ -17,6 +17,7 @@ void add_info(CLI::App& command, Work& chosen);
 void add_voxelize(CLI::App& command, Work& chosen);
 void add_check(CLI::App& command, Work& chosen);
 void add_render(CLI::App& command, Work& chosen);
+void add_view(CLI::App& command, Work& chosen);
 void add_export(CLI::App& command, Work& chosen);
 void add_bench(CLI::App& command, Work& chosen);
 

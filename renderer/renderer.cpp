@@ -278,8 +278,14 @@ void Renderer::Parts::converge(const std::function<void(double)>& progress, doub
     }
 }
 
-Image Renderer::march(const View& view, const std::function<void(int)>& march_band) {
+Image Renderer::march(const View& view, Rows rows, const std::function<void(int)>& march_band) {
     check(view);
+    if (rows.first < 0 || rows.count < 1 || rows.count > view.height - rows.first) {
+        throw Error(
+            Fault::usage, "view",
+            fmt::format("{} rows from row {} of a picture of {}", rows.count, rows.first, view.height),
+            "ask for rows that the picture has");
+    }
     Parts& parts = *parts_;
     const auto start = Clock::now();
     const Tree::Counters before = parts.tree.counters();
@@ -289,9 +295,10 @@ Image Renderer::march(const View& view, const std::function<void(int)>& march_ba
     interop::MarchView marched = march_view(view, parts.grid, parts.shape.n);
     marched.surface_color = glm::vec4(parts.uniform_color, 1.0F);
     const int band_rows = Marcher::band_rows(view.width, view.height);
-    Image image{view.width, view.height, {}};
-    for (int row = 0; row < view.height; row += band_rows) {
-        marched.band = glm::ivec4(row, std::min(band_rows, view.height - row), 0, 0);
+    Image image{view.width, rows.count, {}};
+    const int end = rows.first + rows.count;
+    for (int row = rows.first; row < end; row += band_rows) {
+        marched.band = glm::ivec4(row, std::min(band_rows, end - row), int(view.show), 0);
         parts.marcher.begin_frame(marched, parts.tree, parts.pool);
         march_band(row);
         std::vector<std::uint8_t> band = parts.marcher.read_image();
@@ -306,6 +313,7 @@ Image Renderer::march(const View& view, const std::function<void(int)>& march_ba
     statistics.bricks_evicted = parts.tree.counters().bricks_evicted - before.bricks_evicted;
     statistics.nodes_evicted = parts.tree.counters().nodes_evicted - before.nodes_evicted;
     statistics.bricks_resident = std::uint64_t(parts.tree.bricks_resident());
+    statistics.brick_slots = std::uint64_t(parts.pool.slot_count());
     statistics.node_pool_bytes = parts.tree.size_bytes();
     statistics.brick_pool_bytes = parts.pool.size_bytes();
     return image;
@@ -313,12 +321,21 @@ Image Renderer::march(const View& view, const std::function<void(int)>& march_ba
 
 Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
     parts_->tree.keep_since(0);
-    return march(view, [&](int row) {
+    return march(view, {0, view.height}, [&](int row) {
         parts_->converge(progress, double(view.width) * view.height, double(view.width) * row);
     });
 }
 
+Image Renderer::render_rows(const View& view, Rows rows) {
+    parts_->tree.keep_since(0);
+    return march(view, rows, [&](int) { parts_->converge({}, 0.0, 0.0); });
+}
+
 Image Renderer::render_within(const View& view, double budget_ms) {
+    return render_rows_within(view, {0, view.height}, budget_ms);
+}
+
+Image Renderer::render_rows_within(const View& view, Rows rows, double budget_ms) {
     constexpr double a_day = 86.4e6;
     if (!(budget_ms >= 0.0))
         throw Error(Fault::usage, "frame budget", "it is negative or not a number", "give it milliseconds");
@@ -326,7 +343,7 @@ Image Renderer::render_within(const View& view, double budget_ms) {
         Clock::now() + std::chrono::duration_cast<Clock::duration>(
                            std::chrono::duration<double, std::milli>(std::min(budget_ms, a_day)));
     parts_->tree.keep_since(parts_->round);
-    return march(view, [&](int) { parts_->refine(deadline); });
+    return march(view, rows, [&](int) { parts_->refine(deadline); });
 }
 
 const FrameStatistics& Renderer::statistics() const {

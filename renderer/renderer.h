@@ -21,6 +21,7 @@ struct Camera {
     glm::dvec3 target{0.0};
     glm::dvec3 up{0.0, 1.0, 0.0};
     double yfov = 0.785398163397448;  ///< radians, the whole angle, in (0, pi)
+    bool operator==(const Camera&) const = default;
 };
 
 /// Looks at the whole of the bounds from the front, above and to the right.
@@ -33,9 +34,20 @@ struct Light {
     glm::dvec3 towards{0.4, 0.8, 0.45};  ///< direction to the light, when not
     glm::vec3 color{1.0F};
     float ambient = 0.25F;  ///< light from everywhere, as a share of the light's own
+    bool operator==(const Light&) const = default;
 };
 
 enum class Shadow : std::uint8_t { none, hard };
+
+/// What stands in for the surface's own colour, lit and shadowed like it.
+enum class Show : std::uint8_t {
+    surface,  ///< nothing: the scene
+    levels,   ///< the tree level of the voxels that a pixel shows: shown_level_color()
+    bricks,   ///< the scene, and lines where it passes from one brick into the next, in the level's colour
+};
+
+/// Linear. Level 0 is the root's brick; each level has voxels TreeOptions::n times finer.
+[[nodiscard]] glm::vec3 shown_level_color(int level);
 
 struct View {
     int width = 512;  ///< pixels, [1, 16384]
@@ -47,6 +59,14 @@ struct View {
     /// Size of a voxel on the screen, in pixels: a ray takes the tree level whose voxels are nearest to it,
     /// by ratio, as in mip mapping (Crassin et al. 2008, section 4.3).
     double pixel_error = 1.0;
+    Show show = Show::surface;
+    bool operator==(const View&) const = default;
+};
+
+/// Some rows of a picture, from its top.
+struct Rows {
+    int first = 0;
+    int count = 0;
 };
 
 /// The shape of the N^3-tree and the bounds of its caches (Crassin et al. 2008, section 4).
@@ -79,6 +99,7 @@ struct FrameStatistics {
     double produce_ms = 0.0;            ///< of `milliseconds`: subdividing, producing, uploading
     bool converged = true;              ///< nothing was missing: the picture is that of render()
     std::uint64_t bricks_resident = 0;  ///< after the frame
+    std::uint64_t brick_slots = 0;      ///< the most that can be resident
     std::size_t node_pool_bytes = 0;    ///< what the two stores take, all of it, used or not
     std::size_t brick_pool_bytes = 0;
 };
@@ -112,13 +133,19 @@ public:
     /// statistics().converged. Pools too small for the view leave some of it at a lower level of detail.
     [[nodiscard]] Image render_within(const View& view, double budget_ms);
 
+    /// The same for some rows of the picture, which are those of the whole one, bit for bit: for a caller
+    /// that has other things to do between them. The image is as high as there are rows.
+    /// @throws Error (Fault::usage) when the picture does not have such rows.
+    [[nodiscard]] Image render_rows(const View& view, Rows rows);
+    [[nodiscard]] Image render_rows_within(const View& view, Rows rows, double budget_ms);
+
     /// Of the last `render()` or `render_within()`.
     [[nodiscard]] const FrameStatistics& statistics() const;
 
 private:
     struct Parts;
-    /// Marches a picture band by band; `march_band(row)` brings one to its end.
-    Image march(const View& view, const std::function<void(int)>& march_band);
+    /// Marches rows of a picture band by band; `march_band(row)` brings one to its end.
+    Image march(const View& view, Rows rows, const std::function<void(int)>& march_band);
     std::unique_ptr<Parts> parts_;
 };
 

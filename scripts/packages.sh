@@ -6,11 +6,11 @@ packages=(
   g++ cmake ninja-build pkg-config python3-glad
   # linked, or compiled in
   libglm-dev libfmt-dev libglfw3-dev libegl-dev libtinygltf-dev libstb-dev nlohmann-json3-dev
-  libdraco-dev libmeshoptimizer-dev libembree-dev libtbb-dev libcli11-dev
+  libdraco-dev libmeshoptimizer-dev libembree-dev libtbb-dev libcli11-dev libimgui-dev
   # opened when the program runs: OpenGL without a GPU and without a display
   libegl1 libgl1-mesa-dri
   # to test, and to have something to show
-  libgtest-dev libgmp-dev glslang-tools xvfb assimp-testmodels
+  libgtest-dev libgmp-dev glslang-tools xvfb xdotool assimp-testmodels
   # to read back, in tests, the voxel files that are written
   python3-numpy python3-openvdb libopenvdb-tools goxel
   # to measure: a peer, and what draws the charts

@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
     Verbs, AppWrongUsage,
     ::testing::Values(
         Wrong{{}, "a verb is missing"}, Wrong{{"frobnicate"}, "there is no verb \"frobnicate\""},
-        Wrong{{"view", "builtin:knot"}, "there is no verb \"view\""}, Wrong{{"--nonsense"}, "--nonsense"},
+        Wrong{{"shadow", "builtin:knot"}, "there is no verb \"shadow\""}, Wrong{{"--nonsense"}, "--nonsense"},
         Wrong{{"info"}, "SCENE is required"}, Wrong{{"info", "a.glb", "b.glb"}, "b.glb"},
         Wrong{{"info", "builtin:nothing"}, "knot"}, Wrong{{"export", "builtin:knot"}, "--output is required"},
         Wrong{{"info", "builtin:knot", "--animation", "walk"}, "no animation \"walk\""},

@@ -111,6 +111,32 @@ TEST_F(FrameBudgetTest, PoolsTooSmallLowerTheLevelOfDetailAndStandStill) {
     EXPECT_EQ(renderer.render(view_).rgba, expected.rgba);
 }
 
+TEST_F(FrameBudgetTest, FullPoolThatHoldsTheViewProducesItOnce) {
+    View behind = view_;
+    behind.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
+    std::uint64_t needed = 0;
+    {
+        Renderer fresh = make();
+        (void)fresh.render_within(behind, 1e9);
+        needed = fresh.statistics().bricks_produced;
+    }
+    TreeOptions options;
+    const std::size_t side = std::size_t(options.m) + 2;
+    options.brick_pool_bytes = std::size_t(double(needed) * 1.3) * side * side * side * 7;
+    Renderer renderer = make(options);
+    // The views before it have filled the pool.
+    (void)renderer.render_within(view_, 1e9);
+    std::uint64_t produced = 0;
+    int frames = 0;
+    do {
+        // In parts, as a viewer does.
+        (void)renderer.render_rows_within(behind, {(frames % 4) * 30, 30}, 0.0);
+        produced += renderer.statistics().bricks_produced;
+    } while (++frames < 400 && (frames % 4 != 0 || !renderer.statistics().converged));
+    EXPECT_LE(produced, needed + needed / 4) << "of " << needed << ", in " << frames << " frames";
+    EXPECT_EQ(renderer.render(behind).rgba, make().render(behind).rgba);
+}
+
 TEST_F(FrameBudgetTest, MovingCameraNeverShowsThePreviousView) {
     Renderer renderer = make();
     Renderer fresh = make();

@@ -1,6 +1,7 @@
 #include "renderer/march/marcher.h"
 
 #include <algorithm>
+#include <string>
 
 #include "base/error.h"
 #include "gl/limits.h"
@@ -22,21 +23,34 @@ constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY 
 Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders)
     : shaders_(shaders),
       defines_(shape.defines(has_color)),
-      patient_(build_programs(shaders, defines_, "0")),
       view_(sizeof(interop::MarchView), "view"),
-      queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {}
-
-Marcher::Programs Marcher::build_programs(const gl::ShaderSource& shaders, gl::Defines defines,
-                                          const char* progressive) {
-    defines.emplace_back("PROGRESSIVE", progressive);
-    return {gl::build_compute(shaders, "march/primary.comp.glsl", defines),
-            gl::build_compute(shaders, "march/shadow.comp.glsl", defines)};
+      queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
+    (void)primary_program(PassKind::patient);
+    (void)shadow_program(PassKind::patient);
 }
 
-const Marcher::Programs& Marcher::programs(PassKind kind) {
-    if (kind == PassKind::patient) return patient_;
-    if (!progressive_) progressive_ = build_programs(shaders_, defines_, "1");
-    return *progressive_;
+const gl::Program& Marcher::primary_program(PassKind kind) {
+    const int progressive = kind == PassKind::patient ? 0 : 1;
+    const int show_tree = show_tree_ ? 1 : 0;
+    gl::Program& program = primary_[std::size_t(progressive + 2 * show_tree)];
+    if (program.id() == 0) {
+        gl::Defines defines = defines_;
+        defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
+        defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
+        program = gl::build_compute(shaders_, "march/primary.comp.glsl", defines);
+    }
+    return program;
+}
+
+const gl::Program& Marcher::shadow_program(PassKind kind) {
+    const int progressive = kind == PassKind::patient ? 0 : 1;
+    gl::Program& program = shadow_[std::size_t(progressive)];
+    if (program.id() == 0) {
+        gl::Defines defines = defines_;
+        defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
+        program = gl::build_compute(shaders_, "march/shadow.comp.glsl", defines);
+    }
+    return program;
 }
 
 int Marcher::band_rows(int width, int height) {
@@ -64,6 +78,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     }
     view_.write(0, &view, sizeof(view));
     first_pass_ = true;
+    show_tree_ = view.band.z != SHOW_SURFACE;
     pauses_ = 0;
     waiting_primary_ = 0;
     waiting_shadow_ = 0;
@@ -89,10 +104,9 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     const std::uint32_t old_shadow = waiting_shadow_;
     const glm::ivec2 blocks = (size_ + 7) / 8;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
-    const Programs& program = programs(kind);
-    if (old_shadow != 0) run({program.shadow, true, old_shadow}, round, pool, kind);
+    if (old_shadow != 0) run({shadow_program(kind), true, old_shadow}, round, pool, kind);
     const std::uint32_t primary = first_pass_ ? std::uint32_t(blocks.x * blocks.y) * 64U : waiting_primary_;
-    if (primary != 0) run({program.primary, false, primary}, round, pool, kind);
+    if (primary != 0) run({primary_program(kind), false, primary}, round, pool, kind);
     first_pass_ = false;
     list_side_ ^= 1;
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -62,14 +62,9 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> read_image() const;
 
 private:
-    /// The two kinds of ray.
-    struct Programs {
-        gl::Program primary;
-        gl::Program shadow;
-    };
-    [[nodiscard]] static Programs build_programs(const gl::ShaderSource& shaders, gl::Defines defines,
-                                                 const char* progressive);
-    [[nodiscard]] const Programs& programs(PassKind kind);
+    /// Built when a pass first asks for it.
+    [[nodiscard]] const gl::Program& primary_program(PassKind kind);
+    [[nodiscard]] const gl::Program& shadow_program(PassKind kind);
     struct Dispatch {
         const gl::Program& program;
         bool is_shadow = false;
@@ -80,8 +75,8 @@ private:
 
     gl::ShaderSource shaders_;
     gl::Defines defines_;
-    Programs patient_;
-    std::optional<Programs> progressive_;  ///< built when a frame first asks for them
+    std::array<gl::Program, 4> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE
+    std::array<gl::Program, 2> shadow_;   ///< PROGRESSIVE
     gl::Buffer view_;
     gl::Buffer rays_;
     gl::Buffer lists_;
@@ -95,6 +90,7 @@ private:
     std::uint32_t waiting_primary_ = 0;
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;
+    bool show_tree_ = false;
     int pauses_ = 0;     // passes in a row in which rays only paused
     int list_side_ = 0;  // which half of the lists is read
 };

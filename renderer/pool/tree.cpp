@@ -108,7 +108,7 @@ std::optional<int> Tree::add_brick(std::uint32_t entry, bool may_stay) {
     pin_path(entry);
     const int slot = take_slot();
     if (slot < 0) return std::nullopt;
-    bricks_.touch(slot, may_stay ? round_ : 0);
+    bricks_.touch(slot, may_stay ? round_ : std::max(keep_since_, 1U) - 1);
     slot_owner_[std::size_t(slot)] = entry;
     entries_[entry].brick = std::uint32_t(slot) + 1;
     mark_dirty(entry);

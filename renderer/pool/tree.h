@@ -55,7 +55,8 @@ public:
     void set_child_mask(std::uint32_t entry, glm::uvec2 mask);
 
     /// Gives the tile a slot for its brick, or none when all slots were given out in this round.
-    /// @param may_stay  counts as used in this round; else it is the first to be evicted.
+    /// @param may_stay  counts as used in this round; else as used just before keep_since(), so that it takes
+    ///                  the place of nothing that is needed now.
     [[nodiscard]] std::optional<int> add_brick(std::uint32_t entry, bool may_stay = true);
 
     /// Sends what changed to the GPU.

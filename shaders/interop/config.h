@@ -98,6 +98,17 @@
 // A mean normal that looks away from the viewer by less than this (cosine) belongs to a silhouette, not to a back side.
 #define SILHOUETTE_BEND 0.35
 
+// What a picture shows; in this order in renderer.h.
+#define SHOW_SURFACE 0
+#define SHOW_LEVELS 1
+#define SHOW_BRICKS 2
+
+// Colours of tree levels: 0.5 + 0.5 cos(LEVEL_HUE * level + phase), one phase a channel.
+#define LEVEL_HUE 2.4
+#define LEVEL_PHASE_R 0.6
+#define LEVEL_PHASE_G 4.8
+#define LEVEL_PHASE_B 2.7
+
 // A ray stops when less light than this is left: half a step of an 8-bit image.
 #define OPAQUE_TRANSMITTANCE (1.0 / 512.0)
 

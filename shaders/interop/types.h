@@ -103,7 +103,7 @@ struct MarchView {
     vec4 background;
     vec4 surface_color;    // base colour everywhere, when the pool holds none
     ivec4 size_shadow;     // xy: pixels of the picture; z: 1 = trace shadow rays
-    ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone
+    ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone; z: SHOW_*
 };
 
 // A ray between two passes. Primary: what it has gathered. Shadow: depth and color stay, `weight` becomes visibility.

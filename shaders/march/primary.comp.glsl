@@ -1,10 +1,13 @@
 // One thread is one waiting primary ray.
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1
-// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0
-// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1
+// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0
 #include "march/march.glsl"
 #include "march/shade.glsl"
+#if SHOW_TREE
+#include "march/show_tree.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -26,6 +29,9 @@ bool visit(inout Ray ray, Sample s) {
     color *= color;  // stored as square roots, for the eye's sake
 #endif
     const vec3 normal = filtered(brick_normal, s).xyz * 2.0 - 1.0;
+#if SHOW_TREE
+    color = tree_color(s, color, normal);
+#endif
     state.color.rgb += weight * color;
     state.normal_depth.xyz += weight * normal / max(length(normal), 1e-3);
     if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {

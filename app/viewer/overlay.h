@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+struct GLFWwindow;
+
+namespace cairn::app {
+
+/// Text over the picture (Dear ImGui). One at a time; it takes no input.
+class Overlay {
+public:
+    explicit Overlay(GLFWwindow* window);
+    Overlay(const Overlay&) = delete;
+    Overlay& operator=(const Overlay&) = delete;
+    Overlay(Overlay&&) = delete;
+    Overlay& operator=(Overlay&&) = delete;
+    ~Overlay();
+
+    /// @param line    at the bottom
+    /// @param notice  above it, or empty
+    void draw(const std::string& line, const std::string& notice, bool with_help) const;
+};
+
+}  // namespace cairn::app

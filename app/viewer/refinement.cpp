@@ -1,0 +1,103 @@
+#include "app/viewer/refinement.h"
+
+#include <algorithm>
+
+namespace cairn::app {
+namespace {
+
+/// A band that lacks something is given up after so many visits that evicted bricks and changed no pixel, or
+/// after so many in all: the pools are too small for it.
+constexpr int most_idle_visits = 3;
+constexpr int most_visits = 500;
+/// The marcher's blocks of pixels are as high.
+constexpr int block_rows = 8;
+
+int rows_at(const Pace& pace, int width) {
+    return std::max(int(pace.pixels() / width) / block_rows * block_rows, block_rows);
+}
+
+}  // namespace
+
+Refinement::Refinement(const renderer::View& view) : view_(view) {
+    image_.width = view.width;
+    image_.height = view.height;
+    image_.rgba.resize(std::size_t(view.width) * std::size_t(view.height) * 4);
+}
+
+bool Refinement::settled() const {
+    return complete() && std::all_of(bands_.begin(), bands_.end(),
+                                     [](const Band& band) { return band.converged || band.stuck; });
+}
+
+bool Refinement::converged() const {
+    return complete() &&
+           std::all_of(bands_.begin(), bands_.end(), [](const Band& band) { return band.converged; });
+}
+
+double Refinement::share_done() const {
+    if (view_.height == 0) return 1.0;
+    int rows = 0;
+    for (const Band& band : bands_)
+        rows += band.converged || band.stuck ? band.rows.count : 0;
+    return double(rows) / view_.height;
+}
+
+/// The next rows of the first sweep, then the first band that lacks something, until nothing more can be done
+/// for it: where the pools hold one band but not all, turns would make the bands evict each other's bricks. A
+/// band is cut where it would take long.
+Band& Refinement::choose(const Pace& pace) {
+    const int rows = rows_at(pace, view_.width);
+    if (!complete()) {
+        const int count = std::min(rows, view_.height - next_row_);
+        bands_.push_back({{next_row_, count}});
+        next_row_ += count;
+        return bands_.back();
+    }
+    while (bands_[next_band_].converged || bands_[next_band_].stuck)
+        ++next_band_;
+    Band& band = bands_[next_band_];
+    if (band.rows.count >= 2 * rows) {
+        const Band rest{{band.rows.first + rows, band.rows.count - rows}};
+        band.rows.count = rows;
+        bands_.insert(bands_.begin() + std::ptrdiff_t(next_band_) + 1, rest);
+    }
+    return bands_[next_band_];
+}
+
+void Refinement::step(renderer::Renderer& renderer, Pace& pace) {
+    Band& band = choose(pace);
+    const renderer::Image rows = renderer.render_rows_within(view_, band.rows, pace.aim_ms());
+    const renderer::FrameStatistics& statistics = renderer.statistics();
+    band.converged = statistics.converged;
+    note_visit(band, rows, statistics);
+    pace.learn(statistics.march_ms, double(view_.width) * band.rows.count);
+    put(rows, band.rows.first);
+}
+
+void Refinement::note_visit(Band& band, const renderer::Image& rows,
+                            const renderer::FrameStatistics& statistics) const {
+    const auto before = image_.rgba.begin() + std::ptrdiff_t(band.rows.first) * view_.width * 4;
+    const bool full = statistics.bricks_evicted > 0 || statistics.nodes_evicted > 0;
+    const bool answered = statistics.bricks_produced > 0 || statistics.nodes_subdivided > 0;
+    const bool same = std::equal(rows.rgba.begin(), rows.rgba.end(), before);
+    band.idle_visits = same && (full || !answered) ? band.idle_visits + 1 : 0;
+    ++band.visits;
+    band.stuck = !band.converged && (band.idle_visits >= most_idle_visits || band.visits >= most_visits);
+}
+
+void Refinement::finish_stuck(renderer::Renderer& renderer) {
+    for (Band& band : bands_) {
+        if (band.converged) continue;
+        put(renderer.render_rows(view_, band.rows), band.rows.first);
+        band.converged = true;
+        band.stuck = false;
+        return;
+    }
+}
+
+void Refinement::put(const renderer::Image& rows, int first_row) {
+    std::copy(rows.rgba.begin(), rows.rgba.end(),
+              image_.rgba.begin() + std::ptrdiff_t(first_row) * view_.width * 4);
+}
+
+}  // namespace cairn::app

@@ -1,0 +1,239 @@
+#include "app/viewer/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/gtc/constants.hpp>
+
+#include "app/view_options.h"
+
+namespace cairn::app {
+namespace {
+
+/// A frame while the view changes, and a slice while it stands still. Each may take about as long again where
+/// bricks are produced.
+constexpr double frame_aim_ms = 50.0;
+constexpr double slice_aim_ms = 30.0;
+constexpr double first_pixels = 60000.0;
+/// The view stands still when it has not changed for so long: between two events of a slow drag it does not.
+constexpr double settle_seconds = 0.15;
+/// From here on the next stage is the full resolution.
+constexpr double nearly_full = 0.6;
+constexpr double pixel_error_a_step = 1.4142135623730951;
+constexpr double least_pixel_error = 0.0625;
+constexpr double largest_pixel_error = 64.0;
+constexpr double longest_fly_step = 0.2;  // seconds; after a pause the camera must not leap
+constexpr int least_side = 16;
+constexpr double forever = 1e9;
+
+/// The view at a share of its width and height.
+renderer::View scaled(renderer::View view, double scale) {
+    view.width =
+        std::clamp(int(std::lround(view.width * scale)), std::min(least_side, view.width), view.width);
+    view.height =
+        std::clamp(int(std::lround(view.height * scale)), std::min(least_side, view.height), view.height);
+    return view;
+}
+
+}  // namespace
+
+Viewer::Viewer(renderer::Renderer& renderer, const renderer::View& view, double scene_size)
+    : renderer_(renderer),
+      view_(view),
+      first_camera_(snapped(view.camera)),
+      scene_size_(scene_size),
+      orbit_(first_camera_, scene_size),
+      fly_(first_camera_, scene_size),
+      frame_pace_(frame_aim_ms, first_pixels),
+      slice_pace_(slice_aim_ms, first_pixels) {
+    view_.camera = first_camera_;
+}
+
+const renderer::Camera& Viewer::camera() const {
+    return flying_ ? fly_.camera() : orbit_.camera();
+}
+
+void Viewer::warm_up() {
+    renderer::View small = scaled(view_, 0.0);
+    for (const renderer::Show show : {renderer::Show::levels, renderer::Show::surface}) {
+        small.show = show;
+        (void)renderer_.render_within(small, 0.0);
+    }
+}
+
+void Viewer::command(Command command) {
+    const renderer::View before = view_;
+    switch (command) {
+        case Command::next_show:
+            view_.show = renderer::Show((int(view_.show) + 1) % 3);
+            break;
+        case Command::toggle_shadow:
+            view_.shadow =
+                view_.shadow == renderer::Shadow::none ? renderer::Shadow::hard : renderer::Shadow::none;
+            break;
+        case Command::toggle_fly:
+            if (flying_) {
+                orbit_ = OrbitCamera(fly_.camera(), scene_size_);
+            } else {
+                fly_ = FlyCamera(orbit_.camera(), scene_size_);
+            }
+            flying_ = !flying_;
+            ways_ = glm::dvec3(0.0);
+            break;
+        case Command::reset_camera:
+            orbit_ = OrbitCamera(first_camera_, scene_size_);
+            fly_ = FlyCamera(first_camera_, scene_size_);
+            break;
+        case Command::finer:
+            view_.pixel_error = std::max(view_.pixel_error / pixel_error_a_step, least_pixel_error);
+            break;
+        case Command::coarser:
+            view_.pixel_error = std::min(view_.pixel_error * pixel_error_a_step, largest_pixel_error);
+            break;
+        case Command::take_picture:
+            picture_ = growing_.view() == view_ && !changed_ ? growing_ : Refinement(view_);
+            break;
+    }
+    changed_ = changed_ || !(view_ == before);
+}
+
+void Viewer::drag_left(const glm::dvec2& moved) {
+    if (flying_) {
+        fly_.look(1.5 * view_.camera.yfov * moved);
+    } else {
+        orbit_.orbit(glm::pi<double>() * moved);
+    }
+}
+
+void Viewer::drag_right(const glm::dvec2& moved) {
+    if (flying_) {
+        OrbitCamera panned(fly_.camera(), scene_size_);
+        panned.pan(moved);
+        fly_.place(panned.camera());
+    } else {
+        orbit_.pan(moved);
+    }
+}
+
+void Viewer::wheel(double steps) {
+    if (flying_) {
+        fly_.change_speed(steps);
+    } else {
+        orbit_.zoom(steps);
+    }
+}
+
+void Viewer::resize(const glm::ivec2& size) {
+    if (size.x < 1 || size.y < 1 || size == glm::ivec2(view_.width, view_.height)) return;
+    view_.width = size.x;
+    view_.height = size.y;
+    changed_ = true;
+}
+
+void Viewer::step(double now) {
+    if (flying_) fly_.move(ways_, std::clamp(now - last_step_, 0.0, longest_fly_step));
+    last_step_ = now;
+    const renderer::Camera wanted = snapped(camera());
+    changed_ = changed_ || !(wanted == view_.camera);
+    if (changed_) {
+        view_.camera = wanted;
+        changed_ = false;
+        changed_at_ = now;
+        render_moving_frame();
+    } else if (rest(now) <= 0.0) {
+        if (picture_) {
+            continue_picture();
+        } else {
+            grow();
+        }
+    }
+}
+
+double Viewer::rest(double now) const {
+    if (changed_ || ways_ != glm::dvec3(0.0) || !(snapped(camera()) == view_.camera)) return 0.0;
+    if (settled() && !picture_) return forever;
+    return std::max(changed_at_ + settle_seconds - now, 0.0);
+}
+
+void Viewer::render_moving_frame() {
+    const double pixels = double(view_.width) * view_.height;
+    const renderer::View small = scaled(view_, std::min(std::sqrt(frame_pace_.pixels() / pixels), 1.0));
+    base_ = renderer_.render_within(small, frame_aim_ms);
+    note(frame_ms_);
+    // March and production alike: what counts is when the picture is there.
+    frame_pace_.learn(renderer_.statistics().milliseconds, double(small.width) * small.height);
+    ++base_revision_;
+    growing_ = Refinement();
+    ++growing_revision_;
+}
+
+/// The next slice of the picture that grows; a coarse one that is whole makes room for a finer one.
+void Viewer::grow() {
+    if (growing_.empty() || (growing_.complete() && !(growing_.view() == view_))) {
+        if (!growing_.empty()) {
+            base_ = growing_.image();
+            ++base_revision_;
+        }
+        const double scale = 2.0 * base_.width / view_.width;
+        growing_ = Refinement(scale < nearly_full ? scaled(view_, scale) : view_);
+    }
+    growing_.step(renderer_, slice_pace_);
+    note(slice_ms_);
+    ++growing_revision_;
+}
+
+void Viewer::continue_picture() {
+    if (!picture_->settled()) {
+        picture_->step(renderer_, slice_pace_);
+        note(slice_ms_);
+    } else if (!picture_->converged()) {
+        picture_->finish_stuck(renderer_);
+        note(slice_ms_);
+    }
+    if (picture_->converged()) {
+        taken_ = TakenPicture{picture_->view(), picture_->image()};
+        if (picture_->view() == view_) growing_ = *picture_;
+        picture_.reset();
+        ++growing_revision_;
+    }
+}
+
+void Viewer::note(std::vector<double>& times) {
+    times.push_back(renderer_.statistics().milliseconds);
+    bricks_produced_ += renderer_.statistics().bricks_produced;
+}
+
+std::optional<TakenPicture> Viewer::take_picture() {
+    return std::exchange(taken_, std::nullopt);
+}
+
+bool Viewer::settled() const {
+    return !changed_ && growing_.view() == view_ && growing_.settled();
+}
+
+bool Viewer::converged() const {
+    return settled() && growing_.converged();
+}
+
+std::string Viewer::statistics_line() const {
+    const renderer::FrameStatistics& now = renderer_.statistics();
+    const bool is_growing = !growing_.empty();
+    const int width = is_growing ? growing_.view().width : base_.width;
+    std::string state = "moving";
+    if (picture_) {
+        state = fmt::format("taking a picture {:.0f}%", 100.0 * picture_->share_done());
+    } else if (converged()) {
+        state = "converged";
+    } else if (settled()) {
+        state = "pools full: as fine as they allow";
+    } else if (is_growing) {
+        state = fmt::format("refining {:.0f}%", 100.0 * growing_.share_done());
+    }
+    return fmt::format("{:.0f} ms   {}x{} at {:.0f}%   {} of {} bricks, {} produced   {}", now.milliseconds,
+                       view_.width, view_.height, 100.0 * width / view_.width, now.bricks_resident,
+                       now.brick_slots, bricks_produced_, state);
+}
+
+}  // namespace cairn::app
