@@ -83,6 +83,11 @@ voxelizer::Region region_with(const voxelizer::Surface& surface, voxelizer::Tria
     return best;
 }
 
+/// Without its folders, which are those of one machine.
+std::string file_name(const std::string& path) {
+    return path.substr(path.find_last_of('/') + 1);
+}
+
 std::string measure_deep(const std::string& name, voxelizer::Voxelizer& voxelizer) {
     constexpr int turns = 200;
     const voxelizer::Surface surface = surface_of(name, 512);
@@ -110,12 +115,12 @@ std::string measure_deep(const std::string& name, voxelizer::Voxelizer& voxelize
         "{:<28} {:>8} triangles  {:>5} inside, level {:>2}, {:>6} voxels  region {:.3f} ms (processor "
         "{:.3f}), "
         "asking the index {:.3f} ms; without the index {:.2f} ms{}\n",
-        name.substr(name.find_last_of('/') + 1), surface.triangle_count, inside, region.level, occupied,
-        with_index.wall_ms / turns, with_index.cpu_ms / turns, asking.cpu_ms / turns, without.wall_ms / 20,
-        sum == 0 ? " " : "");
-    return fmt::format("{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},\"{}\"\n", name, surface.triangle_count,
-                       inside, region.level, occupied, with_index.wall_ms / turns, with_index.cpu_ms / turns,
-                       asking.cpu_ms / turns, without.wall_ms / 20, gl::driver_name());
+        file_name(name), surface.triangle_count, inside, region.level, occupied, with_index.wall_ms / turns,
+        with_index.cpu_ms / turns, asking.cpu_ms / turns, without.wall_ms / 20, sum == 0 ? " " : "");
+    return fmt::format("{},{},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},\"{}\"\n", file_name(name),
+                       surface.triangle_count, inside, region.level, occupied, with_index.wall_ms / turns,
+                       with_index.cpu_ms / turns, asking.cpu_ms / turns, without.wall_ms / 20,
+                       gl::driver_name());
 }
 
 std::string measure_sizes(const std::string& name, int resolution, voxelizer::Voxelizer& voxelizer) {
@@ -133,10 +138,10 @@ std::string measure_sizes(const std::string& name, int resolution, voxelizer::Vo
         fmt::print(
             "{} {:>5}  {:>3} MiB  {:>5} regions {:>9} triangles {:>9} voxels  {:>9.1f} ms in all, "
             "{:>9.1f} of it marking, {:>9.1f} of the processor\n",
-            name, resolution, mib, statistics.regions, statistics.triangles, statistics.occupied,
+            file_name(name), resolution, mib, statistics.regions, statistics.triangles, statistics.occupied,
             times.wall_ms, statistics.milliseconds, times.cpu_ms);
-        csv += fmt::format("{},{},{},{},{},{},{:.2f},{:.2f},{:.2f},\"{}\"\n", name, resolution, mib,
-                           statistics.regions, statistics.triangles, statistics.occupied, times.wall_ms,
+        csv += fmt::format("{},{},{},{},{},{},{:.2f},{:.2f},{:.2f},\"{}\"\n", file_name(name), resolution,
+                           mib, statistics.regions, statistics.triangles, statistics.occupied, times.wall_ms,
                            statistics.milliseconds, times.cpu_ms, gl::driver_name());
     }
     return csv;
