@@ -2,9 +2,9 @@
 // samples.
 #include <gtest/gtest.h>
 
-#include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
 #include "tests/masked_scene.h"
+#include "tests/voxelizer_fixture.h"
 #include "voxelizer/conservative_voxelizer.h"
 #include "voxelizer/exact_mask.h"
 
@@ -13,27 +13,16 @@ namespace {
 
 using namespace cairn::test;
 
-class MaskTest : public GlTest {
+class MaskTest : public ConservativeTest {
 protected:
-    void SetUp() override {
-        GlTest::SetUp();
-        voxelizer_.emplace();
-    }
-    void TearDown() override {
-        voxelizer_.reset();
-        GlTest::TearDown();
-    }
     BitGrid voxelize(const Surface& surface) {
-        return voxelizer_->voxelize(upload(surface), whole(surface.grid));
+        return voxelizer().voxelize(upload(surface), whole(surface.grid));
     }
     void expect_exact(const MaskedScene& scene, int resolution, const std::string& what) {
         const Surface surface = scene.surface(resolution);
         EXPECT_TRUE(same_bits(voxelize(surface), reference::exact_voxels(surface, whole(surface.grid))))
             << what << ", resolution " << resolution;
     }
-
-private:
-    std::optional<ConservativeVoxelizer> voxelizer_;
 };
 
 glm::vec3 random_corner(Random& random, bool on_planes) {

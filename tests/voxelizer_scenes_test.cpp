@@ -7,8 +7,8 @@
 #include "reference/exact_voxels.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
-#include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
+#include "tests/voxelizer_fixture.h"
 #include "voxelizer/conservative_voxelizer.h"
 
 namespace cairn::voxelizer {
@@ -115,20 +115,11 @@ std::vector<Files> all_files() {
     return out;
 }
 
-class EveryFile : public GlTest, public ::testing::WithParamInterface<Files> {
+class EveryFile : public ConservativeTest, public ::testing::WithParamInterface<Files> {
 protected:
-    void SetUp() override {
-        GlTest::SetUp();
-        voxelizer_.emplace();
-    }
-    void TearDown() override {
-        voxelizer_.reset();
-        GlTest::TearDown();
-    }
-
     void check(const Surface& surface, const Region& region, const std::string& what) {
         const BitGrid truth = reference::exact_voxels(surface, region);
-        EXPECT_TRUE(same_bits(voxelizer_->voxelize(upload(surface), region), truth)) << what;
+        EXPECT_TRUE(same_bits(voxelizer().voxelize(upload(surface), region), truth)) << what;
         const bool may_be_empty = surface.triangle_count == 0 || surface.has_mask;
         EXPECT_TRUE(truth.count() > 0 || may_be_empty) << what << ": there is nothing to compare";
     }

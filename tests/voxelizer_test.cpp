@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "gl/limits.h"
-#include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
+#include "tests/voxelizer_fixture.h"
 #include "voxelizer/conservative_voxelizer.h"
 
 namespace cairn::voxelizer {
@@ -18,18 +18,8 @@ using namespace cairn::test;
 
 constexpr std::int64_t N = lattice_side;
 
-class VoxelizerTest : public GlTest {
+class VoxelizerTest : public ConservativeTest {
 protected:
-    void SetUp() override {
-        GlTest::SetUp();
-        voxelizer_.emplace();
-    }
-    void TearDown() override {
-        voxelizer_.reset();
-        GlTest::TearDown();
-    }
-    Voxelizer& voxelizer() { return *voxelizer_; }
-
     /// Each triangle alone has exactly the voxels that it meets.
     void expect_exact(const std::vector<LatticeTriangle>& triangles, const Region& region) {
         std::vector<LatticeTriangle> near;
@@ -43,9 +33,6 @@ protected:
             EXPECT_TRUE(same_bits(voxelizer().voxelize(surface, region, subset), voxels_of(t, region)))
                 << to_string(t) << "level " << region.level;
         }
-    }
-    BitGrid voxelize(const std::vector<LatticeTriangle>& triangles, const Region& region) {
-        return voxelizer().voxelize(upload(lattice_surface(triangles, 16)), region);
     }
 
 private:

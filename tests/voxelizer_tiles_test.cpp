@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "scenes/builtin.h"
 #include "scenes/snapshot.h"
-#include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
+#include "tests/voxelizer_fixture.h"
 #include "voxelizer/conservative_voxelizer.h"
 #include "voxelizer/solid_tiles.h"
 #include "voxelizer/voxelize_tiles.h"
@@ -50,18 +50,8 @@ private:
     std::tuple<int, int, int> last_{-1, -1, -1};
 };
 
-class TilesTest : public GlTest {
+class TilesTest : public ConservativeTest {
 protected:
-    void SetUp() override {
-        GlTest::SetUp();
-        voxelizer_.emplace();
-    }
-    void TearDown() override {
-        voxelizer_.reset();
-        GlTest::TearDown();
-    }
-    Voxelizer& voxelizer() { return *voxelizer_; }
-
     /// The same bits whether marked at once, in a region for each tile, or in regions of many.
     TileStatistics expect_as_whole(const Surface& surface, const std::string& what) {
         const GpuSurface on_gpu = upload(surface);
@@ -79,9 +69,6 @@ protected:
         }
         return last;
     }
-
-private:
-    std::optional<ConservativeVoxelizer> voxelizer_;
 };
 
 const glm::ivec3 shapes[] = {{100, 100, 100}, {33, 70, 129}, {200, 31, 65},
