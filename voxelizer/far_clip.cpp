@@ -1,8 +1,7 @@
 #include "voxelizer/far_clip.h"
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 #include "shaders/interop/config.h"
@@ -10,68 +9,79 @@
 namespace cairn::voxelizer {
 namespace {
 
-constexpr double lattice_side = 1 << LATTICE_BITS;
+/// A convex part of a triangle, as weights of its vertices.
+using Polygon = std::vector<glm::dvec3>;
 
-struct Corner {
-    glm::dvec3 position;
-    glm::dvec2 texcoord;
-    glm::dvec4 color;
-};
-
-Corner between(const Corner& a, const Corner& b, double t) {
-    return {glm::mix(a.position, b.position, t), glm::mix(a.texcoord, b.texcoord, t),
-            glm::mix(a.color, b.color, t)};
-}
-
-/// What lies at or below `limit` along an axis; at or above it where `sign` is -1.
-std::vector<Corner> clip(const std::vector<Corner>& polygon, int axis, double sign, double limit) {
-    std::vector<Corner> kept;
+/// The part where the weighted sum of `inside` is not negative: Sutherland and Hodgman 1974.
+Polygon clip(const Polygon& polygon, const glm::dvec3& inside) {
+    Polygon out;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Corner& from = polygon[i];
-        const Corner& to = polygon[(i + 1) % polygon.size()];
-        const double outside_from = sign * (from.position[axis] - limit);
-        const double outside_to = sign * (to.position[axis] - limit);
-        if (outside_from <= 0.0) kept.push_back(from);
-        if ((outside_from < 0.0 && outside_to > 0.0) || (outside_from > 0.0 && outside_to < 0.0)) {
-            kept.push_back(between(from, to, outside_from / (outside_from - outside_to)));
-            kept.back().position[axis] = limit;
-        }
+        const glm::dvec3& p = polygon[i];
+        const glm::dvec3& q = polygon[(i + 1) % polygon.size()];
+        const double at_p = glm::dot(p, inside);
+        const double at_q = glm::dot(q, inside);
+        if (at_p >= 0.0) out.push_back(p);
+        if ((at_p < 0.0) != (at_q < 0.0)) out.push_back(glm::mix(p, q, at_p / (at_p - at_q)));
     }
-    return kept;
+    return out;
 }
 
-std::vector<Corner> clipped(const FarTriangle& triangle) {
-    std::vector<Corner> polygon;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto bytes = std::bit_cast<glm::u8vec4>(triangle.colors[i]);
-        polygon.push_back({glm::dvec3(triangle.positions[i]), glm::dvec2(triangle.texcoords[i]), bytes});
-    }
+Polygon part_in_box(const FarTriangle& triangle, const glm::dvec3& low, const glm::dvec3& high) {
+    Polygon polygon = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    const auto& [a, b, c] = triangle.positions;
     for (int axis = 0; axis < 3; ++axis) {
-        polygon = clip(polygon, axis, 1.0, 2 * lattice_side);
-        polygon = clip(polygon, axis, -1.0, -lattice_side);
+        const glm::dvec3 p(a[axis], b[axis], c[axis]);
+        polygon = clip(clip(polygon, p - low[axis]), high[axis] - p);
     }
     return polygon;
 }
 
-void append(SurfaceChunk& chunk, const std::vector<Corner>& fan, std::uint32_t material) {
-    const auto first = std::uint32_t(chunk.positions.size());
-    for (const Corner& corner : fan) {
-        const glm::ivec3 position(glm::round(corner.position));
-        chunk.positions.push_back({position.x, position.y, position.z});
-        const auto color = std::bit_cast<std::uint32_t>(glm::u8vec4(glm::round(corner.color)));
-        chunk.attributes.push_back({0, color, glm::vec2(corner.texcoord)});
+void add_vertex(const FarTriangle& triangle, const glm::dvec3& weights, SurfaceChunk& out) {
+    glm::dvec3 position(0.0);
+    glm::dvec2 texcoord(0.0);
+    std::uint32_t color = 0;
+    for (int i = 0; i < 3; ++i) {
+        position += weights[i] * glm::dvec3(triangle.positions[std::size_t(i)]);
+        texcoord += weights[i] * glm::dvec2(triangle.texcoords[std::size_t(i)]);
     }
-    for (std::uint32_t i = 2; i < fan.size(); ++i)
-        chunk.triangles.push_back({{first, first + i - 1, first + i, material}});
+    for (int shift = 0; shift < 32; shift += 8) {
+        double channel = 0.0;
+        for (int i = 0; i < 3; ++i)
+            channel += weights[i] * double(triangle.colors[std::size_t(i)] >> shift & 0xFFU);
+        color |= std::uint32_t(std::lround(std::clamp(channel, 0.0, 255.0))) << shift;
+    }
+    out.positions.push_back(
+        {int(std::lround(position.x)), int(std::lround(position.y)), int(std::lround(position.z))});
+    out.attributes.push_back({0, color, glm::vec2(texcoord)});
+}
+
+constexpr double range_low = -double(1 << LATTICE_BITS);
+constexpr double range_high = 2.0 * double(1 << LATTICE_BITS);
+
+SurfaceChunk clipped_to(std::span<const FarTriangle> triangles, const glm::dvec3& low,
+                        const glm::dvec3& high) {
+    SurfaceChunk pieces;
+    for (const FarTriangle& triangle : triangles) {
+        const Polygon polygon = part_in_box(triangle, low, high);
+        const auto first = std::uint32_t(pieces.positions.size());
+        for (const glm::dvec3& weights : polygon)
+            add_vertex(triangle, weights, pieces);
+        for (std::uint32_t i = 2; i < polygon.size(); ++i)
+            pieces.triangles.push_back({{first, first + i - 1, first + i, triangle.material}});
+    }
+    return pieces;
 }
 
 }  // namespace
 
 SurfaceChunk clip_far_triangles(std::span<const FarTriangle> triangles) {
-    SurfaceChunk chunk;
-    for (const FarTriangle& triangle : triangles)
-        append(chunk, clipped(triangle), triangle.material);
-    return chunk;
+    return clipped_to(triangles, glm::dvec3(range_low), glm::dvec3(range_high));
+}
+
+SurfaceChunk clip_far_triangles(std::span<const FarTriangle> triangles, const Region& region) {
+    const double side = region.voxel_side();
+    return clipped_to(triangles, glm::max(glm::dvec3(region.origin - 1) * side, glm::dvec3(range_low)),
+                      glm::min(glm::dvec3(region.origin + region.size + 1) * side, glm::dvec3(range_high)));
 }
 
 }  // namespace cairn::voxelizer

@@ -12,7 +12,7 @@
 #include "gl/limits.h"
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
-#include "voxelizer/far_pieces.h"
+#include "voxelizer/far_clip.h"
 #include "voxelizer/masked_marker.h"
 #include "voxelizer/pyramid_builder.h"
 
@@ -84,7 +84,7 @@ VoxelAttributes AttributeVoxelizer::gather(const GpuSurface& surface, const Regi
     if (total == 0) return out;
     out.colors.reserve(total);
     out.normals.reserve(total);
-    const GpuSurfaceChunk far_chunk = upload_far_pieces(surface.far_triangles, region);
+    const GpuSurfaceChunk far_chunk = upload_chunk(clip_far_triangles(surface.far_triangles, region));
     for (Part part{}; part.last < total;) {
         part = part_from(part.last, bits);
         sums_ = gl::Buffer(std::size_t(part.last - part.first) * ATTRIBUTE_SUM_WORDS * sizeof(std::uint32_t),
