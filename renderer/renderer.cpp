@@ -11,11 +11,8 @@
 #include "renderer/march/marcher.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
-#include "renderer/produce/surface_oracle.h"
-#include "renderer/produce/surface_producer.h"
-#include "renderer/produce/tile_lists.h"
+#include "renderer/produce/surface_content.h"
 #include "shaders/interop/config.h"
-#include "voxelizer/conservative_voxelizer.h"
 #include "voxelizer/surface.h"
 
 namespace cairn::renderer {
@@ -102,21 +99,15 @@ interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, int
 
 }  // namespace
 
-/// In the order of the data's way: surface, oracle and producer, pools, marcher.
+/// In the order of the data's way: oracle and producer, pools, marcher.
 struct Renderer::Parts {
-    Parts(const TreeShape& tree_shape, const voxelizer::Surface& flat, const TreeOptions& options,
+    Parts(const TreeShape& tree_shape, std::unique_ptr<Content> shown, const TreeOptions& options,
           const gl::ShaderSource& shaders)
         : shape(tree_shape),
-          grid(flat.grid),
-          uniform_color(flat.uniform_color),
-          surface(voxelizer::upload(flat)),
-          lists(tile_lists(shape, flat)),
-          voxelizer(shaders),
-          oracle(shape, surface, voxelizer, lists),
-          producer(shape, surface, lists, shaders),
-          pool(shape, flat.has_color, options.brick_pool_bytes),
-          tree(shape, pool.slot_count(), options.node_pool_bytes, oracle.child_mask(Tile{})),
-          marcher(shape, flat.has_color, shaders) {}
+          content(std::move(shown)),
+          pool(shape, content->has_color(), options.brick_pool_bytes),
+          tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{})),
+          marcher(shape, content->has_color(), shaders) {}
 
     void converge(const std::function<void(double)>& progress, double pixels, double pixels_before);
     void serve(std::vector<std::uint32_t> queries);
@@ -126,13 +117,7 @@ struct Renderer::Parts {
     void subdivide(std::uint32_t entry);
 
     TreeShape shape;
-    voxelizer::Grid grid;
-    glm::vec3 uniform_color;
-    voxelizer::GpuSurface surface;
-    voxelizer::TriangleIndex lists;
-    voxelizer::ConservativeVoxelizer voxelizer;
-    SurfaceOracle oracle;
-    SurfaceProducer producer;
+    std::unique_ptr<Content> content;
     BrickPool pool;
     Tree tree;
     Marcher marcher;
@@ -143,7 +128,8 @@ struct Renderer::Parts {
 Renderer::Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options,
                    const gl::ShaderSource& shaders) {
     const TreeShape shape = make_tree_shape(options.n, options.m, options.max_resolution);
-    parts_ = std::make_unique<Parts>(shape, flatten(scene, snapshot, shape), options, shaders);
+    auto content = std::make_unique<SurfaceContent>(shape, flatten(scene, snapshot, shape), shaders);
+    parts_ = std::make_unique<Parts>(shape, std::move(content), options, shaders);
 }
 
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -156,10 +142,11 @@ void Renderer::Parts::subdivide(std::uint32_t entry) {
     if (!first) return;
     ++statistics.nodes_subdivided;
     const Tile tile = tree.tile(entry);
-    const glm::uvec2 mask = oracle.child_mask(tile);
+    const glm::uvec2 mask = content->oracle().child_mask(tile);
     for (int child = 0; child < shape.child_count(); ++child) {
         if ((mask[child / 32] >> (child % 32) & 1U) == 0) continue;
-        tree.set_child_mask(*first + std::uint32_t(child), oracle.child_mask(child_of(tile, shape.n, child)));
+        tree.set_child_mask(*first + std::uint32_t(child),
+                            content->oracle().child_mask(child_of(tile, shape.n, child)));
     }
 }
 
@@ -184,7 +171,7 @@ void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
                 requests.push_back({tree.tile(entry), *slot});
         }
     }
-    producer.produce(requests, pool);
+    content->producer().produce(requests, pool);
     statistics.bricks_produced += requests.size();
     statistics.tile_queries += queries.size();
     tree.upload();
@@ -232,7 +219,7 @@ bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& 
                     requests.push_back({tree.tile(question.entry), *slot});
             }
         }
-        producer.produce(requests, pool);
+        content->producer().produce(requests, pool);
         glFinish();
         statistics.bricks_produced += requests.size();
         requests.clear();
@@ -292,8 +279,8 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
     parts.statistics = FrameStatistics{};
     FrameStatistics& statistics = parts.statistics;
 
-    interop::MarchView marched = march_view(view, parts.grid, parts.shape.n);
-    marched.surface_color = glm::vec4(parts.uniform_color, 1.0F);
+    interop::MarchView marched = march_view(view, parts.content->grid(), parts.shape.n);
+    marched.surface_color = glm::vec4(parts.content->uniform_color(), 1.0F);
     const int band_rows = Marcher::band_rows(view.width, view.height);
     Image image{view.width, rows.count, {}};
     const int end = rows.first + rows.count;

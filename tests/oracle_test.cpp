@@ -29,7 +29,8 @@ voxelizer::Surface random_surface(std::uint32_t seed) {
 
 glm::uvec2 true_mask(const TreeShape& shape, const voxelizer::Surface& surface, const Tile& tile) {
     const voxelizer::BitGrid bits = reference::exact_voxels(
-        surface, {shape.n_shift() * (tile.level + 1), tile.position * shape.n, glm::ivec3(shape.n)});
+        surface,
+        {shape.n_shift() * (tile.level + 1), glm::ivec3(tile.position) * shape.n, glm::ivec3(shape.n)});
     glm::uvec2 mask(0);
     for (int child = 0; child < shape.child_count(); ++child) {
         if (bits.at({child % shape.n, child / shape.n % shape.n, child / (shape.n * shape.n)}))

@@ -63,7 +63,7 @@ Tile tile_near_vertex(Random& random, const TreeShape& shape, const voxelizer::S
 void expect_occupancy(const voxelizer::Surface& surface, const TreeShape& shape, const Tile& tile,
                       const ProducedBrick& brick) {
     const int level = shape.voxel_level(tile.level);
-    const glm::ivec3 low = tile.position * shape.m;
+    const glm::ivec3 low = glm::ivec3(tile.position) * shape.m;
     EXPECT_TRUE(
         same_bits(mask_bits(brick), reference::exact_voxels(surface, {level, low, glm::ivec3(shape.m)})))
         << "masks, " << to_string(tile);
@@ -118,7 +118,7 @@ TEST_P(SurfaceProducerTest, NeighboursAgreeOnTheTexelsTheyShare) {
     auto compare = [&](const glm::ivec3& voxel) {
         const ProducedBrick* first = nullptr;
         for (std::size_t i = 0; i < tiles.size(); ++i) {
-            const glm::ivec3 place = voxel - tiles[i].position * m;
+            const glm::ivec3 place = voxel - glm::ivec3(tiles[i].position) * m;
             if (glm::any(glm::lessThan(place, glm::ivec3(-1))) ||
                 glm::any(glm::greaterThan(place, glm::ivec3(m))))
                 continue;
@@ -128,7 +128,7 @@ TEST_P(SurfaceProducerTest, NeighboursAgreeOnTheTexelsTheyShare) {
             }
             ++shared;
             const std::size_t a =
-                first->index(voxel - tiles[std::size_t(first - bricks.data())].position * m);
+                first->index(voxel - glm::ivec3(tiles[std::size_t(first - bricks.data())].position) * m);
             const std::size_t b = bricks[i].index(place);
             ASSERT_EQ(first->color[a], bricks[i].color[b])
                 << "colour of voxel " << voxel.x << ' ' << voxel.y << ' ' << voxel.z;

@@ -58,17 +58,17 @@ TEST(TreeShapeTest, RefusesWhatCannotWorkAndSaysWhatCan) {
     }
 }
 
-TEST(TreeShapeTest, EveryTileHasItsOwnKeyAndItsParent) {
-    std::set<std::uint64_t> keys;
+TEST(TreeShapeTest, EveryTileHasItsOwnHashAndItsParent) {
+    std::set<std::size_t> hashes;
     std::size_t tiles = 0;
-    for (const int level : {0, 1, 2, 17, 18}) {
-        const int last = (1 << level) - 1;
-        const std::set<int> places{0, last / 3, last};
-        for (const int x : places) {
-            for (const int y : places) {
-                for (const int z : places) {
+    for (const int level : {0, 1, 2, 17, 18, 60}) {
+        const std::int64_t last = (std::int64_t(1) << level) - 1;
+        const std::set<std::int64_t> places{0, last / 3, last};
+        for (const std::int64_t x : places) {
+            for (const std::int64_t y : places) {
+                for (const std::int64_t z : places) {
                     const Tile tile{level, {x, y, z}};
-                    keys.insert(key_of(tile));
+                    hashes.insert(TileHash{}(tile));
                     ++tiles;
                     for (const int n : {2, 4}) {
                         for (int child = 0; child < n * n * n; ++child)
@@ -78,7 +78,7 @@ TEST(TreeShapeTest, EveryTileHasItsOwnKeyAndItsParent) {
             }
         }
     }
-    EXPECT_EQ(keys.size(), tiles);
+    EXPECT_EQ(hashes.size(), tiles);
 }
 
 /// A tree of N = 2, M = 8 and three levels under the root, with few blocks and slots. Its rounds are counted.
@@ -142,7 +142,7 @@ TEST_F(TreeTest, ChildrenAreTheTilesOfTheRegularSubdivisionDownToTheFinest) {
         next_round();
         entry = first + 5;
         EXPECT_EQ(tree().tile(entry).level, level + 1);
-        EXPECT_EQ(tree().tile(entry).position, glm::ivec3((2 << level) - 1, 0, (2 << level) - 1));
+        EXPECT_EQ(tree().tile(entry).position, glm::i64vec3((2 << level) - 1, 0, (2 << level) - 1));
         EXPECT_EQ(tree().node(entry).child_mask, glm::uvec2(5, level));
     }
     EXPECT_FALSE(tree().wants_children(entry)) << "the finest level has no children";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include <glm/glm.hpp>
@@ -32,22 +33,30 @@ struct TreeShape {
 /// A region of the regular subdivision: level 0 is the root cube, level l has n^l tiles across it.
 struct Tile {
     int level = 0;
-    glm::ivec3 position{0};  ///< in tiles of its level
+    glm::i64vec3 position{0};  ///< in tiles of its level: a path of child numbers, so any depth is exact
 
     [[nodiscard]] bool operator==(const Tile&) const = default;
 };
 
+/// For maps keyed by tiles.
+struct TileHash {
+    [[nodiscard]] std::size_t operator()(const Tile& tile) const {
+        std::uint64_t h = std::uint64_t(tile.level + 1) * 0xD6E8FEB86659FD93U;
+        for (int axis = 0; axis < 3; ++axis) {
+            h = (h ^ std::uint64_t(tile.position[axis])) * 0x9E3779B97F4A7C15U;
+            h ^= h >> 29U;
+        }
+        return std::size_t(h);
+    }
+};
+
 /// Child number x + n (y + n z), as in NodeEntry.child_mask.
 [[nodiscard]] inline Tile child_of(const Tile& tile, int n, int child) {
-    return {tile.level + 1, tile.position * n + glm::ivec3(child % n, child / n % n, child / (n * n))};
-}
-/// One number a tile, for maps; levels up to 63, positions up to 2^19.
-[[nodiscard]] inline std::uint64_t key_of(const Tile& tile) {
-    const auto p = glm::u64vec3(tile.position);
-    return std::uint64_t(tile.level) << 58U | p.x << 38U | p.y << 19U | p.z;
+    const glm::i64vec3 place(child % n, child / n % n, child / (n * n));
+    return {tile.level + 1, tile.position * std::int64_t(n) + place};
 }
 [[nodiscard]] inline Tile parent_of(const Tile& tile, int n) {
-    return {tile.level - 1, tile.position / n};
+    return {tile.level - 1, tile.position / std::int64_t(n)};
 }
 
 }  // namespace cairn::renderer

@@ -26,11 +26,11 @@ glm::uvec2 SurfaceOracle::child_mask(const Tile& tile) {
     const int n = shape_.n;
     const int children_level = shape_.n_shift() * (tile.level + 1);
     const voxelizer::BitGrid& bits = patch.pyramid.level(patch.finest - children_level);
-    const glm::ivec3 patch_low = patch.tile.position
+    const glm::ivec3 patch_low = glm::ivec3(patch.tile.position)
                                  << (children_level - shape_.n_shift() * patch.tile.level);
     glm::uvec2 mask(0);
     for (int child = 0; child < shape_.child_count(); ++child) {
-        if (!bits.at(child_of(tile, n, child).position - patch_low)) continue;
+        if (!bits.at(glm::ivec3(child_of(tile, n, child).position) - patch_low)) continue;
         mask[child / 32] |= 1U << (child % 32);
     }
     return mask;
@@ -46,22 +46,22 @@ const SurfaceOracle::Patch& SurfaceOracle::patch_for(const Tile& tile) {
         depth = patch_depth - patch_depth % shape_.n_shift();
     }
     const int start_level = start / shape_.n_shift();
-    const Tile owner{start_level, tile.position >> (shape_.n_shift() * (tile.level - start_level))};
-    const std::uint64_t key = key_of(owner);
-    if (const auto found = patches_.find(key); found != patches_.end()) return found->second;
+    const Tile owner{start_level,
+                     tile.position >> std::int64_t(shape_.n_shift() * (tile.level - start_level))};
+    if (const auto found = patches_.find(owner); found != patches_.end()) return found->second;
 
     if (patches_.size() > patch_limit) patches_.clear();
     Patch patch;
     patch.tile = owner;
     patch.finest = std::min(start + depth, finest_needed);
     const int side = 1 << (patch.finest - start);
-    const voxelizer::Region region{patch.finest, owner.position * side, glm::ivec3(side)};
+    const voxelizer::Region region{patch.finest, glm::ivec3(owner.position) * side, glm::ivec3(side)};
     if (owner.level == 0) {
         patch.pyramid = voxelizer_.voxelize_pyramid(surface_, region);
     } else {
         patch.pyramid = voxelizer_.voxelize_pyramid(surface_, region, lists_.list(cell_of(owner, shape_)));
     }
-    return patches_.emplace(key, std::move(patch)).first->second;
+    return patches_.emplace(owner, std::move(patch)).first->second;
 }
 
 }  // namespace cairn::renderer

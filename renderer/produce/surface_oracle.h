@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <unordered_map>
 
 #include "renderer/produce/oracle.h"
@@ -36,7 +35,7 @@ private:
     const voxelizer::GpuSurface& surface_;
     voxelizer::Voxelizer& voxelizer_;
     voxelizer::TriangleIndex& lists_;
-    std::unordered_map<std::uint64_t, Patch> patches_;
+    std::unordered_map<Tile, Patch, TileHash> patches_;
 };
 
 }  // namespace cairn::renderer

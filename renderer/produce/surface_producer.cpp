@@ -103,7 +103,7 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     tiles.reserve(requests.size());
     for (const BrickRequest& request : requests) {
         const int shift = LATTICE_BITS - shape_.voxel_level(request.tile.level);
-        tiles.push_back({glm::ivec4(request.tile.position * shape_.m, shift),
+        tiles.push_back({glm::ivec4(glm::ivec3(request.tile.position) * shape_.m, shift),
                          glm::ivec4(pool.first_texel(request.slot), request.slot)});
     }
     tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::BrickTile));

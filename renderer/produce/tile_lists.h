@@ -19,7 +19,7 @@ constexpr std::size_t tile_list_limit = std::size_t(64) << 20U;
 }
 
 [[nodiscard]] inline voxelizer::Cell cell_of(const Tile& tile, const TreeShape& shape) {
-    return {shape.n_shift() * tile.level, tile.position};
+    return {shape.n_shift() * tile.level, glm::ivec3(tile.position)};
 }
 
 }  // namespace cairn::renderer

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "renderer/produce/oracle.h"
+#include "renderer/produce/producer.h"
+#include "voxelizer/grid.h"
+
+namespace cairn::renderer {
+
+/// What a tree shows: the cube that its root covers, who knows what is empty there, and who fills its bricks.
+class Content {
+public:
+    Content() = default;
+    Content(const Content&) = delete;
+    Content& operator=(const Content&) = delete;
+    Content(Content&&) = delete;
+    Content& operator=(Content&&) = delete;
+    virtual ~Content() = default;
+
+    [[nodiscard]] virtual Oracle& oracle() = 0;
+    [[nodiscard]] virtual Producer& producer() = 0;
+    /// As many voxels as the finest level of the tree has.
+    [[nodiscard]] virtual const voxelizer::Grid& grid() const = 0;
+    /// Do bricks hold colours? Else everything has uniform_color(), linear.
+    [[nodiscard]] virtual bool has_color() const = 0;
+    [[nodiscard]] virtual glm::vec3 uniform_color() const = 0;
+};
+
+}  // namespace cairn::renderer

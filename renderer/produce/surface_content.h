@@ -1,0 +1,36 @@
+#pragma once
+
+#include "gl/shader_source.h"
+#include "renderer/produce/content.h"
+#include "renderer/produce/surface_oracle.h"
+#include "renderer/produce/surface_producer.h"
+#include "voxelizer/conservative_voxelizer.h"
+#include "voxelizer/surface.h"
+#include "voxelizer/triangle_index.h"
+
+namespace cairn::renderer {
+
+/// The surface of a scene, voxelized tile by tile.
+class SurfaceContent final : public Content {
+public:
+    /// The surface is not needed afterwards.
+    SurfaceContent(const TreeShape& shape, const voxelizer::Surface& surface,
+                   const gl::ShaderSource& shaders);
+
+    [[nodiscard]] Oracle& oracle() override { return oracle_; }
+    [[nodiscard]] Producer& producer() override { return producer_; }
+    [[nodiscard]] const voxelizer::Grid& grid() const override { return grid_; }
+    [[nodiscard]] bool has_color() const override { return surface_.has_color; }
+    [[nodiscard]] glm::vec3 uniform_color() const override { return uniform_color_; }
+
+private:
+    voxelizer::Grid grid_;
+    glm::vec3 uniform_color_;
+    voxelizer::GpuSurface surface_;
+    voxelizer::TriangleIndex lists_;
+    voxelizer::ConservativeVoxelizer voxelizer_;
+    SurfaceOracle oracle_;
+    SurfaceProducer producer_;
+};
+
+}  // namespace cairn::renderer

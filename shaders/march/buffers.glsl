@@ -1,0 +1,27 @@
+// What all passes of rays read and write.
+#include "interop/config.h"
+#include "interop/bindings.h"
+#include "interop/types.h"
+#include "pool/brick_masks.glsl"
+
+layout(std140, binding = UBO_VIEW) uniform ViewBlock { MarchView view; };
+layout(std430, binding = SSBO_RAYS) buffer RayBlock { RayState rays[]; };
+layout(std430, binding = SSBO_LISTS) buffer ListBlock { uint lists[]; };
+layout(std430, binding = SSBO_QUERIES) buffer QueryBlock {
+    MarchCounters counters;
+    uint queries[];
+};
+layout(std430, binding = SSBO_USAGE) buffer UsageBlock { uint usage[]; };
+layout(std430, binding = SSBO_IMAGE) buffer ImageBlock { uint image_rgba8[]; };
+layout(binding = TEXTURE_NODES) uniform usamplerBuffer nodes;
+layout(binding = TEXTURE_BRICK_MASKS) uniform usamplerBuffer brick_masks;
+layout(binding = TEXTURE_BRICK_COLOR) uniform sampler3D brick_color;
+layout(binding = TEXTURE_BRICK_NORMAL) uniform sampler3D brick_normal;
+
+uniform uint pass_number;
+uniform uint usage_query_offset;  // word in usage[] where the query bits start
+uniform ivec3 pool_slots;         // slots along each axis of the pool's textures
+#if PROGRESSIVE
+uniform bool stand_in;            // the last pass of a frame: no ray may wait
+uniform uint entry_count;         // of the node pool
+#endif

@@ -1,0 +1,105 @@
+// Down the tree, from its root to the tile that a ray asks for.
+// The brick that a ray is in.
+struct Place {
+    int slot;         // -1: none
+    int tile_shift;   // log2 of the tile's side
+#if PROGRESSIVE
+    int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in
+#endif
+    uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
+};
+
+// Log2 of a voxel's side.
+int voxel_shift_of(Place place) {
+#if PROGRESSIVE
+    return place.brick_shift - M_SHIFT;
+#else
+    return place.tile_shift - M_SHIFT;
+#endif
+}
+
+#define DESCENT_FOUND 0    // place holds a brick
+#define DESCENT_EMPTY 1    // nothing here: `empty_shift` is the side of the cell to step over
+#define DESCENT_MISSING 2  // the tile was asked for
+
+void use_brick(inout Place place, int slot) {
+    place.slot = slot;
+    place.summary = texelFetch(brick_masks, slot * MASK_WORDS_A_SLOT).xy;
+    touch(slot);
+}
+
+#if PROGRESSIVE
+// The nearest node above the ray's voxel that has a brick.
+struct Ancestor {
+    int slot;  // -1: none
+    int tile_shift;
+};
+
+// Shows the cell of side 1 << shift around the ray's voxel by the ancestor's brick, or as empty.
+int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int empty_shift) {
+    atomicAdd(counters.stood_in, 1u);
+    empty_shift = shift;
+    if (ancestor.slot < 0) return DESCENT_EMPTY;
+    place.tile_shift = shift;
+    place.brick_shift = ancestor.tile_shift;
+    use_brick(place, ancestor.slot);
+    return DESCENT_FOUND;
+}
+#endif
+
+// Finds the tile that the ray's cone asks for at its voxel: kd-restart.
+int descend(Ray ray, out Place place, out int empty_shift) {
+    const float width = ray.cone_base + ray.cone_slope * ray.t;
+    uint entry = 0u;
+    uvec4 node = texelFetch(nodes, 0);
+    place.slot = -1;
+    place.tile_shift = ROOT_SHIFT;
+#if PROGRESSIVE
+    place.brick_shift = ROOT_SHIFT;
+#endif
+    place.summary = uvec2(0u);
+    empty_shift = ROOT_SHIFT;
+    if (MAX_LEVEL > 0 && (node.x | node.y) == 0u) return DESCENT_EMPTY;  // nothing in the whole scene
+#if PROGRESSIVE
+    Ancestor ancestor = Ancestor(-1, ROOT_SHIFT);
+#endif
+    for (int level = 0; level < MAX_LEVEL; ++level) {
+        if (float(1 << (place.tile_shift - M_SHIFT)) <= width) break;
+        const ivec3 c = (ray.voxel >> (place.tile_shift - N_SHIFT)) & (TREE_N - 1);
+#if TREE_N == 4
+        const int empty = empty_shift_4(node.xy, c);
+#else
+        const int empty = empty_shift_2(node.x, c);
+#endif
+        if (empty >= 0) {
+            empty_shift = place.tile_shift - N_SHIFT + empty;
+            return DESCENT_EMPTY;
+        }
+#if PROGRESSIVE
+        if (node.w != 0u) ancestor = Ancestor(int(node.w) - 1, place.tile_shift);
+        else ask(2u * entry_count + entry);
+#endif
+        if (node.z == 0u) {
+            query(entry, QUERY_CHILDREN);
+#if PROGRESSIVE
+            if (stand_in) return stand_in_for_cell(ancestor, place.tile_shift - N_SHIFT, place, empty_shift);
+#endif
+            return DESCENT_MISSING;
+        }
+        entry = node.z + uint(c.x + TREE_N * (c.y + TREE_N * c.z));
+        node = texelFetch(nodes, int(entry));
+        place.tile_shift -= N_SHIFT;
+    }
+#if PROGRESSIVE
+    place.brick_shift = place.tile_shift;
+#endif
+    if (node.w == 0u) {
+        query(entry, QUERY_BRICK);
+#if PROGRESSIVE
+        if (stand_in) return stand_in_for_cell(ancestor, place.tile_shift, place, empty_shift);
+#endif
+        return DESCENT_MISSING;
+    }
+    use_brick(place, int(node.w) - 1);
+    return DESCENT_FOUND;
+}

@@ -1,0 +1,42 @@
+// Through the empty cells of a brick, by its masks.
+// Which block of 4^3 voxels is empty: -1 when block c is not, else log2 of an empty aligned cell's side, in blocks.
+int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
+#if BLOCKS_A_SIDE == 4
+    return empty_shift_4(summary, c);
+#elif BLOCKS_A_SIDE == 2
+    return empty_shift_2(summary.x, c);
+#else
+    const int block = c.x + BLOCKS_A_SIDE * (c.y + BLOCKS_A_SIDE * c.z);
+    const uvec2 word = texelFetch(brick_masks, slot * MASK_WORDS_A_SLOT + block / 64).xy;
+    return ((block % 64 < 32 ? word.x : word.y) >> (block % 32) & 1u) != 0u ? -1 : 0;
+#endif
+}
+
+#define SKIM_OCCUPIED 0  // the ray's voxel is occupied
+#define SKIM_LEFT 1      // the ray left the tile
+#define SKIM_ENDED 2     // the ray is done
+
+// Skips the empty cells of a brick.
+int skim(inout Ray ray, Place place, inout int turns) {
+    const int voxel_shift = voxel_shift_of(place);
+    const ivec3 tile = ray.voxel >> place.tile_shift;
+    const int first_mask = place.slot * MASK_WORDS_A_SLOT + SUMMARY_WORDS;
+    // A straight line crosses at most 3 M - 2 cells of a brick.
+    for (int cell = 0; cell < 3 * BRICK_M; ++cell) {
+        ++turns;
+        const ivec3 b = (ray.voxel >> voxel_shift) & (BRICK_M - 1);
+        const ivec3 c = b >> 2;
+        int empty = empty_block_shift(place.slot, place.summary, c);
+        int shift = voxel_shift + 2 + empty;
+        if (empty < 0) {
+            const uvec2 mask =
+                texelFetch(brick_masks, first_mask + c.x + BLOCKS_A_SIDE * (c.y + BLOCKS_A_SIDE * c.z)).xy;
+            empty = empty_shift_4(mask, b & 3);
+            if (empty < 0) return SKIM_OCCUPIED;
+            shift = voxel_shift + empty;
+        }
+        if (!step_over(ray, shift)) return SKIM_ENDED;
+        if (any(notEqual(ray.voxel >> place.tile_shift, tile))) return SKIM_LEFT;
+    }
+    return SKIM_LEFT;
+}
