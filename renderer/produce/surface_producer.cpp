@@ -46,10 +46,12 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     pair_buffer_ = gl::Buffer(pair_capacity * sizeof(interop::BrickPair), "brick pairs");
 }
 
-void SurfaceProducer::produce(std::span<const BrickRequest> requests, const BrickPool& pool) {
+std::vector<Produced> SurfaceProducer::produce(std::span<const BrickRequest> requests,
+                                               const BrickPool& pool) {
     for (std::size_t i = 0; i < requests.size(); i += std::size_t(batch_)) {
         produce_batch(requests.subspan(i, std::min(std::size_t(batch_), requests.size() - i)), pool);
     }
+    return std::vector<Produced>(requests.size());
 }
 
 void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {

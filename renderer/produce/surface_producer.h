@@ -21,7 +21,7 @@ public:
     SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface,
                     voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders);
 
-    void produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+    std::vector<Produced> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
 
 private:
     void produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool);

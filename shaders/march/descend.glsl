@@ -35,7 +35,7 @@ struct Ancestor {
     int tile_shift;
 };
 
-// Shows the cell of side 1 << shift around the ray's voxel by the ancestor's brick, or as empty.
+// Shows the cell around the ray's voxel by the ancestor's brick, or as empty.
 int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int empty_shift) {
     atomicAdd(counters.stood_in, 1u);
     empty_shift = shift;
@@ -59,47 +59,43 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #endif
     place.summary = uvec2(0u);
     empty_shift = ROOT_SHIFT;
-    if (MAX_LEVEL > 0 && (node.x | node.y) == 0u) return DESCENT_EMPTY;  // nothing in the whole scene
+    if (MAX_LEVEL > 0 && has_no_child(node)) return DESCENT_EMPTY;  // nothing in the whole scene
 #if PROGRESSIVE
     Ancestor ancestor = Ancestor(-1, ROOT_SHIFT);
 #endif
     for (int level = 0; level < MAX_LEVEL; ++level) {
-        if (float(1 << (place.tile_shift - M_SHIFT)) <= width) break;
-        const ivec3 c = (ray.voxel >> (place.tile_shift - N_SHIFT)) & (TREE_N - 1);
-#if TREE_N == 4
-        const int empty = empty_shift_4(node.xy, c);
-#else
-        const int empty = empty_shift_2(node.x, c);
-#endif
+        if (float(cell_side(place.tile_shift - M_SHIFT)) <= width) break;
+        const ivec3 c = place_in(ray.voxel, place.tile_shift - N_SHIFT, N_SHIFT);
+        const int empty = empty_child_shift(node, c);
         if (empty >= 0) {
             empty_shift = place.tile_shift - N_SHIFT + empty;
             return DESCENT_EMPTY;
         }
 #if PROGRESSIVE
-        if (node.w != 0u) ancestor = Ancestor(int(node.w) - 1, place.tile_shift);
+        if (brick_slot(node) >= 0) ancestor = Ancestor(brick_slot(node), place.tile_shift);
         else ask(2u * entry_count + entry);
 #endif
-        if (node.z == 0u) {
+        if (!has_children(node)) {
             query(entry, QUERY_CHILDREN);
 #if PROGRESSIVE
             if (stand_in) return stand_in_for_cell(ancestor, place.tile_shift - N_SHIFT, place, empty_shift);
 #endif
             return DESCENT_MISSING;
         }
-        entry = node.z + uint(c.x + TREE_N * (c.y + TREE_N * c.z));
+        entry = child_entry(node, c);
         node = texelFetch(nodes, int(entry));
         place.tile_shift -= N_SHIFT;
     }
 #if PROGRESSIVE
     place.brick_shift = place.tile_shift;
 #endif
-    if (node.w == 0u) {
+    if (brick_slot(node) < 0) {
         query(entry, QUERY_BRICK);
 #if PROGRESSIVE
         if (stand_in) return stand_in_for_cell(ancestor, place.tile_shift, place, empty_shift);
 #endif
         return DESCENT_MISSING;
     }
-    use_brick(place, int(node.w) - 1);
+    use_brick(place, brick_slot(node));
     return DESCENT_FOUND;
 }

@@ -78,14 +78,14 @@ int march(inout Ray ray) {
         const int found = seek(ray, place, turns);
         if (found != SEEK_OCCUPIED) return found == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
         const int voxel_shift = voxel_shift_of(place);
-        const ivec3 tile = ray.voxel >> place.tile_shift;
-        const ivec3 low = (ray.voxel >> voxel_shift) << voxel_shift;
-        const ivec3 brick_low = (ray.voxel >> (voxel_shift + M_SHIFT)) << (voxel_shift + M_SHIFT);
-        const float side = float(1 << voxel_shift);
+        const ivec3 tile = cell_of(ray.voxel, place.tile_shift);
+        const ivec3 low = cell_low(ray.voxel, voxel_shift);
+        const ivec3 brick_low = cell_low(ray.voxel, voxel_shift + M_SHIFT);
+        const float side = float(cell_side(voxel_shift));
         const float t_in = ray.t;
         Sample s;
         s.slot = place.slot;
-        s.voxel = (low - brick_low) >> voxel_shift;
+        s.voxel = cell_of(low - brick_low, voxel_shift);
         s.side = side;
         s.centre = vec3(low) + 0.5 * side;
         const bool goes_on = step_over(ray, voxel_shift);
@@ -93,7 +93,7 @@ int march(inout Ray ray) {
         s.middle = clamp((ray.origin + ray.direction * s.t - vec3(brick_low)) / side, vec3(0.0),
                          vec3(float(BRICK_M)));
         if (!visit(ray, s) || !goes_on) return MARCH_DONE;
-        if (any(notEqual(ray.voxel >> place.tile_shift, tile))) place.slot = -1;
+        if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) place.slot = -1;
     }
 }
 

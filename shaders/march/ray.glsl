@@ -48,11 +48,11 @@ bool enter_root(inout Ray ray) {
     return true;
 }
 
-// Steps over the aligned cell of side 1 << shift around the ray's voxel, to the voxel behind it; false when the ray has
+// Steps over the aligned cell around the ray's voxel, to the voxel behind it; false when the ray has
 // left the root cube or come to its end.
 bool step_over(inout Ray ray, int shift) {
-    const ivec3 low = (ray.voxel >> shift) << shift;
-    const ivec3 high = low + ((1 << shift) - 1);
+    const ivec3 low = cell_low(ray.voxel, shift);
+    const ivec3 high = low + (cell_side(shift) - 1);
     const bvec3 forward = equal(ray.positive, ivec3(1));
     const vec3 bound = vec3(mix(low, high + 1, forward));
     const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(1e30), ray.inert);
@@ -65,5 +65,5 @@ bool step_over(inout Ray ray, int shift) {
     const ivec3 kept = mix(min(inside, ray.voxel), max(inside, ray.voxel), forward);
     ray.voxel = mix(kept, mix(low - 1, high + 1, forward), leaves);
     ray.t = t_exit;
-    return all(equal(ray.voxel >> ROOT_SHIFT, ivec3(0))) && t_exit < ray.t_end;
+    return all(greaterThanEqual(ray.voxel, ivec3(0))) && all(lessThan(ray.voxel, ivec3(ROOT_SIDE))) && t_exit < ray.t_end;
 }

@@ -1,5 +1,7 @@
-// Cells of the tree and of its bricks, as powers of two of finest-level voxels.
+// Cells of the tree and of its bricks: aligned cubes whose sides are powers of CELL_BASE in finest-level voxels. A power is
+// called a shift, because with CELL_BASE 2 it is one.
 // Needs the defines TREE_N, BRICK_M and MAX_LEVEL (the tree's depth).
+#define CELL_BASE 2
 #if TREE_N == 4
 #define N_SHIFT 2
 #elif TREE_N == 2
@@ -14,9 +16,19 @@
 #elif BRICK_M == 64
 #define M_SHIFT 6
 #endif
+// A block is the cube of voxels that one word of a brick's masks tells of.
+#define BLOCK_SHIFT 2
 
 #define ROOT_SHIFT (M_SHIFT + N_SHIFT * MAX_LEVEL)
 #define ROOT_SIDE (1 << ROOT_SHIFT)
+
+int cell_side(int shift) { return 1 << shift; }
+// Number of the cell of that size that a voxel is in, along each axis.
+ivec3 cell_of(ivec3 voxel, int shift) { return voxel >> shift; }
+// The first voxel of that cell.
+ivec3 cell_low(ivec3 voxel, int shift) { return (voxel >> shift) << shift; }
+// Place of that cell in the cell that is `up` powers larger.
+ivec3 place_in(ivec3 voxel, int shift, int up) { return (voxel >> shift) & ((1 << up) - 1); }
 
 // A 4^3 mask, x fastest: -1 when cell c is occupied, else log2 of the side of an empty aligned cell around it.
 int empty_shift_4(uvec2 mask, ivec3 c) {
@@ -27,3 +39,22 @@ int empty_shift_4(uvec2 mask, ivec3 c) {
 
 // A 2^3 mask likewise.
 int empty_shift_2(uint mask, ivec3 c) { return (mask >> (c.x + 2 * c.y + 4 * c.z) & 1u) != 0u ? -1 : 0; }
+
+// --- a node, as fetched (NodeEntry) ---
+
+// Child c: -1 when it is not empty, else the shift of the side of an empty aligned cell around it, in children.
+int empty_child_shift(uvec4 node, ivec3 c) {
+#if TREE_N == 4
+    return empty_shift_4(node.xy, c);
+#else
+    return empty_shift_2(node.x, c);
+#endif
+}
+bool has_no_child(uvec4 node) { return (node.x | node.y) == 0u; }
+bool has_children(uvec4 node) { return node.z != 0u; }
+uint child_entry(uvec4 node, ivec3 c) { return node.z + uint(c.x + TREE_N * (c.y + TREE_N * c.z)); }
+// Slot of its brick; -1: none.
+int brick_slot(uvec4 node) { return int(node.w) - 1; }
+
+// A word of a brick's masks likewise: voxel c of a block.
+int empty_voxel_shift(uvec2 mask, ivec3 c) { return empty_shift_4(mask, c); }
