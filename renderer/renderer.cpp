@@ -4,11 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <tuple>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "renderer/march/marcher.h"
+#include "renderer/march/windows.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
 #include "renderer/produce/surface_content.h"
@@ -59,9 +61,64 @@ void check(const View& view) {
     }
 }
 
-/// The view in voxels of the finest level, from the root cube's low corner.
-interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, int n) {
-    auto place = [&](const glm::dvec3& world) { return glm::vec3((world - grid.origin) / grid.voxel_size); };
+void check_anchor(const std::optional<Tile>& anchor, const TreeShape& shape) {
+    if (!anchor) return;
+    const bool has_level = anchor->level >= 0 && anchor->level <= shape.max_level;
+    const std::int64_t across = std::int64_t(1) << (has_level ? shape.n_shift() * anchor->level : 0);
+    if (!has_level || glm::any(glm::lessThan(anchor->position, glm::i64vec3(0))) ||
+        glm::any(glm::greaterThanEqual(anchor->position, glm::i64vec3(across)))) {
+        throw Error(Fault::usage, "view", "the tree has no tile where the camera is anchored",
+                    fmt::format("its levels are 0 to {}", shape.max_level));
+    }
+}
+
+/// Where a point of the view is in the tree. Unanchored ones are told from the root cube.
+Place place_of(const View& view, const glm::dvec3& point, const voxelizer::Grid& grid) {
+    if (view.anchor) return {*view.anchor, point};
+    return {Tile{}, (point - grid.origin) / (grid.voxel_size * grid.resolution.x)};
+}
+
+/// The view without its anchor, for trees whose depth doubles can tell.
+View in_world(const View& view, const voxelizer::Grid& grid, const TreeShape& shape) {
+    if (!view.anchor) return view;
+    View out = view;
+    const double side = grid.voxel_size * grid.resolution.x;
+    const double across = std::ldexp(1.0, shape.n_shift() * view.anchor->level);
+    auto to_world = [&](const glm::dvec3& place) {
+        return grid.origin + (glm::dvec3(view.anchor->position) + place) * (side / across);
+    };
+    out.camera.eye = to_world(view.camera.eye);
+    out.camera.target = to_world(view.camera.target);
+    out.light.position = to_world(view.light.position);
+    out.anchor.reset();
+    return out;
+}
+
+/// What of a view is told in voxels: of the finest level, from the root cube's low corner; or of the coarsest
+/// window, from its own.
+struct Placed {
+    glm::dvec3 eye{0.0};
+    glm::dvec3 light{0.0};   ///< when positional
+    glm::dvec3 centre{0.0};  ///< of the root cube
+    double side = 0.0;       ///< of the root cube
+};
+
+Placed in_voxels(const View& view, const voxelizer::Grid& grid) {
+    auto place = [&](const glm::dvec3& world) { return (world - grid.origin) / grid.voxel_size; };
+    const double side = grid.resolution.x;
+    return {place(view.camera.eye), place(view.light.position), glm::dvec3(0.5 * side), side};
+}
+
+Placed in_window(const View& view, const voxelizer::Grid& grid, const TreeShape& shape,
+                 const Window& window) {
+    auto place = [&](const Place& point) { return place_in(window, shape, point); };
+    const glm::dvec3 low = place({Tile{}, glm::dvec3(0.0)});
+    const glm::dvec3 high = place({Tile{}, glm::dvec3(1.0)});
+    return {place(place_of(view, view.camera.eye, grid)), place(place_of(view, view.light.position, grid)),
+            0.5 * (low + high), high.x - low.x};
+}
+
+interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
@@ -74,17 +131,16 @@ interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, int
 
     // Far from the scene a float's step is many voxels: then rays start near the root cube, from the plane
     // that the eye moved forward lies in.
-    const double side = grid.resolution.x;
-    const glm::dvec3 eye = (view.camera.eye - grid.origin) / grid.voxel_size;
-    const double distance = glm::dot(glm::dvec3(0.5 * side) - eye, forward);
-    const double skipped = distance > 3.0 * side ? distance - 2.0 * side : 0.0;
+    const glm::dvec3& eye = placed.eye;
+    const double distance = glm::dot(placed.centre - eye, forward);
+    const double skipped = distance > 3.0 * placed.side ? distance - 2.0 * placed.side : 0.0;
 
     interop::MarchView out{};
     out.eye = glm::vec4(glm::vec3(eye + forward * skipped), float(cone));
     out.forward = glm::vec4(glm::vec3(forward), float(skipped));
     out.right = glm::vec4(glm::vec3(right * half_width), 0.0F);
     out.up = glm::vec4(glm::vec3(up * half_height), 0.0F);
-    out.light = view.light.positional ? glm::vec4(place(view.light.position), 1.0F)
+    out.light = view.light.positional ? glm::vec4(glm::vec3(placed.light), 1.0F)
                                       : glm::vec4(glm::vec3(glm::normalize(view.light.towards)), 0.0F);
     out.light_color = glm::vec4(view.light.color, view.light.ambient);
     out.background = glm::vec4(view.background, 0.0F);
@@ -109,6 +165,8 @@ struct Renderer::Parts {
           tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{})),
           marcher(shape, content->has_color(), shaders) {}
 
+    [[nodiscard]] interop::MarchView march_view_of(const View& view);
+    void find_tiles_asked_for(const std::vector<std::uint32_t>& entries);
     void converge(const std::function<void(double)>& progress, double pixels, double pixels_before);
     void serve(std::vector<std::uint32_t> queries);
     void refine(Clock::time_point deadline);
@@ -121,15 +179,30 @@ struct Renderer::Parts {
     BrickPool pool;
     Tree tree;
     Marcher marcher;
+    std::vector<Window> windows;  ///< of the frame; none where the shape has none
+    std::vector<interop::MarchWindow> marched_windows;
     std::uint32_t round = 1;
     FrameStatistics statistics;
 };
 
 Renderer::Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options,
                    const gl::ShaderSource& shaders) {
-    const TreeShape shape = make_tree_shape(options.n, options.m, options.max_resolution);
+    const TreeShape shape = tree_shape_of(options);
+    if (shape.has_windows()) {
+        throw Error(Fault::usage, "tree", "a surface has no voxels as fine as its finest level",
+                    fmt::format("give it at most 2^{} voxels across", MAX_RESOLUTION_BITS));
+    }
     auto content = std::make_unique<SurfaceContent>(shape, flatten(scene, snapshot, shape), shaders);
     parts_ = std::make_unique<Parts>(shape, std::move(content), options, shaders);
+}
+
+Renderer::Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
+                   const gl::ShaderSource& shaders)
+    : parts_(std::make_unique<Parts>(tree_shape_of(options), std::move(content), options, shaders)) {}
+
+TreeShape tree_shape_of(const TreeOptions& options) {
+    return options.max_level ? make_deep_tree_shape(options.n, options.m, *options.max_level)
+                             : make_tree_shape(options.n, options.m, options.max_resolution);
 }
 
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -150,6 +223,43 @@ void Renderer::Parts::subdivide(std::uint32_t entry) {
     }
 }
 
+/// Places the windows too, where there are any.
+interop::MarchView Renderer::Parts::march_view_of(const View& view) {
+    const voxelizer::Grid& grid = content->grid();
+    if (!shape.has_windows()) {
+        const View unanchored = in_world(view, grid, shape);
+        return march_view(unanchored, in_voxels(unanchored, grid), shape.n);
+    }
+    const Place eye = place_of(view, view.camera.eye, grid);
+    const Place light = place_of(view, view.light.position, grid);
+    windows = windows_around(shape, eye);
+    const interop::MarchView marched =
+        march_view(view, in_window(view, grid, shape, windows.back()), shape.n);
+    marched_windows =
+        march_windows(windows, shape, eye, view.light.positional ? &light : nullptr, view.light.towards);
+    marched_windows.back().eye = marched.eye;  // nearer to the scene, where the eye is far from it
+    return marched;
+}
+
+/// Rays that miss a tile of a window ask for children of its nearest ancestor: brings the tile itself, so
+/// that a deep view does not take a pass for each level.
+void Renderer::Parts::find_tiles_asked_for(const std::vector<std::uint32_t>& entries) {
+    if (!shape.has_windows() || entries.empty()) return;
+    std::unordered_set<std::uint32_t> asked;
+    auto add_children_of = [&](std::uint32_t entry) {
+        const std::uint32_t first = tree.node(entry).children;
+        for (int child = 0; first != 0 && child < shape.child_count(); ++child)
+            asked.insert(first + std::uint32_t(child));
+    };
+    for (const std::uint32_t entry : entries)
+        add_children_of(entry);
+    find_tiles(windows, tree, marched_windows, [&](std::uint32_t entry) {
+        if (!asked.contains(entry)) return;
+        subdivide(entry);
+        add_children_of(entry);
+    });
+}
+
 /// Answers the tile queries of a pass. Bricks come first, then the deepest nodes: whatever the pools' sizes,
 /// the ray that is nearest to its data gets it, so every pass brings some ray forward and the frame ends.
 void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
@@ -162,15 +272,18 @@ void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
         return a < b;
     });
     std::vector<BrickRequest> requests;
+    std::vector<std::uint32_t> parents;
     for (const std::uint32_t query : queries) {
         const std::uint32_t entry = query / 2;
         if (query % 2 == QUERY_CHILDREN) {
             subdivide(entry);
+            parents.push_back(entry);
         } else if (tree.wants_brick(entry)) {
             if (const std::optional<int> slot = tree.add_brick(entry))
                 requests.push_back({tree.tile(entry), *slot});
         }
     }
+    find_tiles_asked_for(parents);
     content->producer().produce(requests, pool);
     statistics.bricks_produced += requests.size();
     statistics.tile_queries += queries.size();
@@ -179,6 +292,10 @@ void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
 
 PassResult Renderer::Parts::march(PassKind kind) {
     const auto start = Clock::now();
+    if (shape.has_windows()) {
+        find_tiles(windows, tree, marched_windows);
+        marcher.set_windows(marched_windows);
+    }
     PassResult pass = marcher.run_pass(round, tree, pool, kind);
     statistics.march_ms += milliseconds_since(start);
     ++statistics.passes;
@@ -209,16 +326,20 @@ bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& 
     });
     const std::uint64_t before = statistics.nodes_subdivided + statistics.bricks_produced;
     std::vector<BrickRequest> requests;
+    std::vector<std::uint32_t> parents;
     for (std::size_t first = 0; first < questions.size(); first += batch) {
         for (std::size_t i = first; i < std::min(first + batch, questions.size()); ++i) {
             const Question& question = questions[i];
             if (question.for_children) {
                 subdivide(question.entry);
+                parents.push_back(question.entry);
             } else if (tree.wants_brick(question.entry)) {
                 if (const std::optional<int> slot = tree.add_brick(question.entry, !question.to_stand_in))
                     requests.push_back({tree.tile(question.entry), *slot});
             }
         }
+        find_tiles_asked_for(parents);
+        parents.clear();
         content->producer().produce(requests, pool);
         glFinish();
         statistics.bricks_produced += requests.size();
@@ -267,6 +388,7 @@ void Renderer::Parts::converge(const std::function<void(double)>& progress, doub
 
 Image Renderer::march(const View& view, Rows rows, const std::function<void(int)>& march_band) {
     check(view);
+    check_anchor(view.anchor, parts_->shape);
     if (rows.first < 0 || rows.count < 1 || rows.count > view.height - rows.first) {
         throw Error(
             Fault::usage, "view",
@@ -279,7 +401,7 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
     parts.statistics = FrameStatistics{};
     FrameStatistics& statistics = parts.statistics;
 
-    interop::MarchView marched = march_view(view, parts.content->grid(), parts.shape.n);
+    interop::MarchView marched = parts.march_view_of(view);
     marched.surface_color = glm::vec4(parts.content->uniform_color(), 1.0F);
     const int band_rows = Marcher::band_rows(view.width, view.height);
     Image image{view.width, rows.count, {}};

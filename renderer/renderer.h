@@ -10,6 +10,8 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "renderer/pool/tree_shape.h"
+#include "renderer/produce/content.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 
@@ -60,6 +62,9 @@ struct View {
     /// by ratio, as in mip mapping (Crassin et al. 2008, section 4.3).
     double pixel_error = 1.0;
     Show show = Show::surface;
+    /// The camera and the light are told from this tile's low corner, in units of its side, instead of in the
+    /// world: so a view is exact however deep it is.
+    std::optional<Tile> anchor = std::nullopt;
     bool operator==(const View&) const = default;
 };
 
@@ -74,9 +79,15 @@ struct TreeOptions {
     int n = 4;                  ///< children an axis: 2 or 4
     int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
+    /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest voxels
+    /// are at least 2^-60 of the root cube.
+    std::optional<int> max_level = std::nullopt;
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
 };
+
+/// @throws Error (Fault::usage) for a shape that cannot work.
+[[nodiscard]] TreeShape tree_shape_of(const TreeOptions& options);
 
 /// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended
 /// in).
@@ -115,6 +126,9 @@ public:
     /// @throws Error  Fault::usage for a tree shape or a pool that cannot work; Fault::memory when it does
     /// not fit.
     Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options = {},
+             const gl::ShaderSource& shaders = {});
+    /// Content made for tree_shape_of(options), which must be the options here.
+    Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
              const gl::ShaderSource& shaders = {});
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;

@@ -14,7 +14,10 @@ namespace {
 constexpr unsigned group_size = 64;
 /// Passes in a row in which rays only pause: a ray crosses fewer than 8 cells for each voxel across the root
 /// cube.
+/// With windows, that many in each.
 constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
+constexpr int most_pauses_in_windows = ((16 << WINDOW_TILE_BITS) / TURN_BUDGET + 1) * MAX_WINDOWS;
+constexpr std::size_t window_header_bytes = sizeof(glm::ivec4);
 constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
 constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t);
 
@@ -25,6 +28,8 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource&
       defines_(shape.defines(has_color)),
       view_(sizeof(interop::MarchView), "view"),
       queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
+    if (shape.has_windows())
+        windows_ = gl::Buffer(window_header_bytes + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows");
     (void)primary_program(PassKind::patient);
     (void)shadow_program(PassKind::patient);
 }
@@ -84,6 +89,12 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     waiting_shadow_ = 0;
 }
 
+void Marcher::set_windows(const std::vector<interop::MarchWindow>& windows) {
+    const glm::ivec4 count(int(windows.size()), 0, 0, 0);
+    windows_.write(0, &count, sizeof(count));
+    windows_.write(window_header_bytes, windows.data(), windows.size() * sizeof(interop::MarchWindow));
+}
+
 PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool, PassKind kind) {
     // Stand-ins are asked for by progressive passes alone.
     const std::size_t query_words =
@@ -93,6 +104,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     if (kind != PassKind::patient)
         queries_.fill(query_counts_offset, QUERY_COUNTS * sizeof(std::uint32_t), 0);
     view_.bind_uniform(UBO_VIEW);
+    if (windows_.id() != 0) windows_.bind_uniform(UBO_WINDOWS);
     rays_.bind_storage(SSBO_RAYS);
     lists_.bind_storage(SSBO_LISTS);
     queries_.bind_storage(SSBO_QUERIES);
@@ -114,7 +126,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     const bool waiting = counters.waiting_primary != 0 || counters.waiting_shadow != 0;
     const bool stalled = waiting && counters.queries == 0 && counters.paused == 0 && primary == 0;
     pauses_ = counters.paused != 0 && counters.queries == 0 ? pauses_ + 1 : 0;
-    if (stalled || pauses_ > most_pauses) {
+    if (stalled || pauses_ > (windows_.id() != 0 ? most_pauses_in_windows : most_pauses)) {
         throw Error(Fault::internal, "ray-marcher", "a ray did not come to an end",
                     "this is a fault of Cairn: please report the scene and the view");
     }

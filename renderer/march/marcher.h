@@ -49,6 +49,9 @@ public:
     /// Sets the frame, or a band of it (`view.band`); buffers grow when the bands do.
     void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool);
 
+    /// For trees with windows: before each pass, since tiles come and go.
+    void set_windows(const std::vector<interop::MarchWindow>& windows);
+
     /// Runs every waiting ray until it ends, misses a tile, or has crossed so many cells that it pauses.
     /// `round` is a number that grows with each pass.
     /// @throws Error (Fault::internal) when rays wait though nothing is missing and none has paused, or pause
@@ -78,6 +81,7 @@ private:
     std::array<gl::Program, 4> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE
     std::array<gl::Program, 2> shadow_;   ///< PROGRESSIVE
     gl::Buffer view_;
+    gl::Buffer windows_;  ///< empty where the tree has none
     gl::Buffer rays_;
     gl::Buffer lists_;
     gl::Buffer queries_;

@@ -23,12 +23,21 @@ struct TreeShape {
     [[nodiscard]] int voxel_level(int level) const { return m_shift() + n_shift() * level; }
     /// Voxels across the root cube at the finest level.
     [[nodiscard]] int resolution() const { return 1 << voxel_level(max_level); }
+    /// Too many voxels for a ray to count: it goes through windows (renderer/march/windows.h), and resolution()
+    /// has no meaning.
+    [[nodiscard]] bool has_windows() const;
+    /// Levels under a window's tiles that a ray can reach.
+    [[nodiscard]] int levels_in_window() const;
     [[nodiscard]] gl::Defines defines(bool has_color) const;
 };
 
 /// The deepest shape whose voxels do not pass `max_resolution` across the root cube.
 /// @throws Error (Fault::usage) when n, m or the resolution cannot work; says which values can.
 [[nodiscard]] TreeShape make_tree_shape(int n, int m, int max_resolution);
+
+/// A shape of any depth, whose finest voxels may be 2^-60 of the root cube.
+/// @throws Error (Fault::usage) likewise.
+[[nodiscard]] TreeShape make_deep_tree_shape(int n, int m, int max_level);
 
 /// A region of the regular subdivision: level 0 is the root cube, level l has n^l tiles across it.
 struct Tile {

@@ -44,6 +44,7 @@
 
 // The marcher.
 #define UBO_VIEW 0
+#define UBO_WINDOWS 1  // their number, then MarchWindow from the finest on; only for trees that are marched through them
 #define SSBO_RAYS 0     // RayState a pixel
 #define SSBO_LISTS 1    // pixels that wait: four lists of one pixel count each
 #define SSBO_QUERIES 2  // MarchCounters, then the tile query buffer

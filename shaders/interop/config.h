@@ -95,6 +95,14 @@
 // Voxels across the root cube stay below this, because a ray state packs three coordinates in 63 bits.
 #define MAX_RESOLUTION_BITS 21
 
+// Deeper trees are marched through windows (renderer/march/windows.h): cubes of 2^3 tiles around the eye, one a level.
+// Log2 of a window's tile, at most, in the voxels that the ray counts in: floats tell 2^-7 of one.
+#define WINDOW_TILE_BITS 16
+#define MAX_WINDOWS 64
+// A tile of a window: the number of its entry, or
+#define WINDOW_EMPTY 4294967295u    // there is nothing in it
+#define WINDOW_MISSING 2147483648u  // plus the entry of its nearest ancestor, which must be subdivided
+
 // A mean normal that looks away from the viewer by less than this (cosine) belongs to a silhouette, not to a back side.
 #define SILHOUETTE_BEND 0.35
 

@@ -85,13 +85,19 @@ struct BrickTile {
     ivec4 low_shift;   // xyz: low corner, in voxels of the tile's level, without the border; w: log2 of a voxel's side
     ivec4 slot_texel;  // xyz: first texel of the slot in the pool's textures (border included); w: slot
 };
+// A tile of the fractal (renderer/produce/fractal_content.h) whose brick is being produced.
+struct FractalTile {
+    ivec4 slot_texel;  // as in BrickTile
+    uvec4 neighbours;  // x: bit x + 3 (y + 3 z): the tile (x, y, z) - 1 away is not empty
+};
 struct BrickPair {
     uint triangle;     // local to the bound surface chunk
     uint tile;         // in the batch
     uint rows;         // first y | count of y << 8 | first z << 16 | count of z << 24, border included
 };
 
-// All lengths in voxels of the finest level, positions from the root cube's low corner.
+// All lengths in voxels of the finest level, positions from the root cube's low corner. Where rays go through windows,
+// `eye` and `light` stand in MarchWindow instead.
 struct MarchView {
     vec4 eye;              // moved forward to near the root cube, for the precision of floats; w: width of a pixel's
                            // cone at distance 1
@@ -104,6 +110,14 @@ struct MarchView {
     vec4 surface_color;    // base colour everywhere, when the pool holds none
     ivec4 size_shadow;     // xy: pixels of the picture; z: 1 = trace shadow rays
     ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone; z: SHOW_*
+};
+
+// 2^3 tiles of one level, with the eye among them. Lengths in its own voxels, positions from its low corner.
+struct MarchWindow {
+    vec4 eye;
+    vec4 light;            // as MarchView.light
+    ivec4 shift_level;     // xyz: the low corner in the next, coarser window; w: level of the tiles
+    uvec4 tiles[2];        // entry of tile x + 2 (y + 2 z), or WINDOW_*
 };
 
 // A ray between two passes. Primary: what it has gathered. Shadow: depth and color stay, `weight` becomes visibility.
@@ -124,8 +138,10 @@ struct MarchCounters {
 #ifdef __cplusplus
 static_assert(sizeof(NodeEntry) == 16, "GLSL sees another layout");
 static_assert(sizeof(BrickTile) == 32, "GLSL sees another layout");
+static_assert(sizeof(FractalTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(BrickPair) == 12, "GLSL sees another layout");
 static_assert(sizeof(MarchView) == 160, "GLSL sees another layout");
+static_assert(sizeof(MarchWindow) == 80, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
 static_assert(sizeof(MarchCounters) == 20, "GLSL sees another layout");
 static_assert(sizeof(DeformItem) == 32, "GLSL sees another layout");

@@ -47,11 +47,9 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 }
 #endif
 
-// Finds the tile that the ray's cone asks for at its voxel: kd-restart.
+// Finds the tile that the ray's cone asks for at its voxel: kd-restart, from the root or from a window's tile.
 int descend(Ray ray, out Place place, out int empty_shift) {
     const float width = ray.cone_base + ray.cone_slope * ray.t;
-    uint entry = 0u;
-    uvec4 node = texelFetch(nodes, 0);
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
 #if PROGRESSIVE
@@ -59,6 +57,20 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #endif
     place.summary = uvec2(0u);
     empty_shift = ROOT_SHIFT;
+#if WINDOWS
+    uint entry = window_tile(ray);
+    if (entry == WINDOW_EMPTY) return DESCENT_EMPTY;
+    if ((entry & WINDOW_MISSING) != 0u) {
+        query(entry & ~WINDOW_MISSING, QUERY_CHILDREN);
+#if PROGRESSIVE
+        if (stand_in) return stand_in_for_cell(Ancestor(-1, ROOT_SHIFT), ROOT_SHIFT, place, empty_shift);
+#endif
+        return DESCENT_MISSING;
+    }
+#else
+    uint entry = 0u;
+#endif
+    uvec4 node = texelFetch(nodes, int(entry));
     if (MAX_LEVEL > 0 && has_no_child(node)) return DESCENT_EMPTY;  // nothing in the whole scene
 #if PROGRESSIVE
     Ancestor ancestor = Ancestor(-1, ROOT_SHIFT);

@@ -7,10 +7,17 @@
 // With PROGRESSIVE, for frames that must not take long, rays also ask for the bricks of the nodes that they pass, without
 // waiting for them; and when time is up (stand_in), what is missing is shown by the nearest ancestor that has a brick.
 //
-// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth), HAS_COLOR and PROGRESSIVE.
+// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth, or with WINDOWS that under a window's tiles), HAS_COLOR and
+// PROGRESSIVE; WINDOWS for trees whose voxels a ray cannot count (windows.glsl).
 #include "march/buffers.glsl"
 #include "march/tree_cells.glsl"
 #include "march/ray.glsl"
+#if WINDOWS
+#include "march/windows.glsl"
+#else
+bool leave_window(Ray ray) { return false; }  // the one there is
+bool enter_windows(inout Ray ray) { return enter_root(ray); }
+#endif
 
 #define MARCH_DONE 0
 #define MARCH_MISSING 1
@@ -50,11 +57,11 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
             if (descent == DESCENT_MISSING) return SEEK_MISSING;
         }
         if (place.slot < 0) {
-            if (!step_over(ray, empty_shift)) return SEEK_DONE;
+            if (!step_over(ray, empty_shift) && !leave_window(ray)) return SEEK_DONE;
         } else {
             const int skimmed = skim(ray, place, turns);
             if (skimmed == SKIM_OCCUPIED) return SEEK_OCCUPIED;
-            if (skimmed == SKIM_ENDED) return SEEK_DONE;
+            if (skimmed == SKIM_ENDED && !leave_window(ray)) return SEEK_DONE;
             place.slot = -1;
         }
     }
@@ -92,8 +99,13 @@ int march(inout Ray ray) {
         s.t = 0.5 * (t_in + ray.t);
         s.middle = clamp((ray.origin + ray.direction * s.t - vec3(brick_low)) / side, vec3(0.0),
                          vec3(float(BRICK_M)));
-        if (!visit(ray, s) || !goes_on) return MARCH_DONE;
-        if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) place.slot = -1;
+        if (!visit(ray, s)) return MARCH_DONE;
+        if (!goes_on) {
+            if (!leave_window(ray)) return MARCH_DONE;
+            place.slot = -1;
+        } else if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) {
+            place.slot = -1;
+        }
     }
 }
 

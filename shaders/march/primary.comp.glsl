@@ -3,6 +3,8 @@
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1
 // defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 WINDOWS=1
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #if SHOW_TREE
@@ -30,6 +32,9 @@ bool visit(inout Ray ray, Sample s) {
 #endif
     const vec3 normal = filtered(brick_normal, s).xyz * 2.0 - 1.0;
 #if SHOW_TREE
+#if WINDOWS
+    first_level = windows.of[ray.window].shift_level.w;
+#endif
     color = tree_color(s, color, normal);
 #endif
     state.color.rgb += weight * color;
@@ -37,14 +42,18 @@ bool visit(inout Ray ray, Sample s) {
     if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
         state.voxel_t_weight.w = floatBitsToUint(weight);
         state.normal_depth.w = s.t;
+#if WINDOWS
+        seen_window = ray.window;
+#endif
     }
     state.color.a = left;
     return state.color.a > OPAQUE_TRANSMITTANCE;
 }
 
 // Is there light to be stopped on its way to this point?
-bool needs_shadow_ray(PixelRay seen) {
+bool needs_shadow_ray(ivec2 pixel) {
     if (view.size_shadow.z == 0 || state.color.a > 1.0 - 1.0 / 512.0) return false;
+    const PixelRay seen = pixel_ray(pixel);
     const vec3 point = seen.origin + seen.direction * state.normal_depth.w;
     return dot(facing_normal(state, seen.direction), direction_to_light(point)) > 0.0;
 }
@@ -65,13 +74,16 @@ void main() {
     const uint index = uint(pixel.y * view.size_shadow.x + pixel.x);
     const PixelRay seen = pixel_ray(pixel);
     Ray ray = make_ray(seen.origin, seen.direction, 1e30, view.eye.w * seen.skipped, view.eye.w);
+#if WINDOWS
+    ray.from_eye = true;
+#endif
 
     bool inside = true;
     if (first_pass) {
         state.color = vec4(0.0, 0.0, 0.0, 1.0);
         state.normal_depth = vec4(0.0);
         state.voxel_t_weight = uvec4(0u);
-        inside = enter_root(ray);
+        inside = enter_windows(ray);
     } else {
         state = rays[index];
         load_position(ray, state);
@@ -88,8 +100,11 @@ void main() {
             state.color.rgb /= 1.0 - state.color.a;
             state.color.a = 0.0;
         }
-        if (needs_shadow_ray(seen)) {
+        if (needs_shadow_ray(pixel)) {
             state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
+#if WINDOWS
+            state.voxel_t_weight.z = uint(seen_window);
+#endif
             rays[index] = state;
             lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
         } else {

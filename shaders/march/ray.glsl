@@ -10,6 +10,10 @@ struct Ray {
     ivec3 voxel;          // finest-level voxel that the ray is in
     float cone_base;      // pixel width at t is cone_base + cone_slope * t
     float cone_slope;
+#if WINDOWS
+    int window;           // that the ray is in; lengths and positions are in its voxels
+    bool from_eye;        // `origin` is the eye
+#endif
 };
 
 Ray make_ray(vec3 origin, vec3 direction, float t_end, float cone_base, float cone_slope) {
@@ -24,12 +28,16 @@ Ray make_ray(vec3 origin, vec3 direction, float t_end, float cone_base, float co
     ray.voxel = ivec3(0);
     ray.cone_base = cone_base;
     ray.cone_slope = cone_slope;
+#if WINDOWS
+    ray.window = 0;
+    ray.from_eye = false;
+#endif
     return ray;
 }
 
-// Puts the ray where it enters the root cube, at ray.t or behind; false when it misses it.
+// Puts the ray where it enters the marched cube, at ray.t or behind; false when it misses it.
 bool enter_root(inout Ray ray) {
-    const vec3 side = vec3(float(ROOT_SIDE));
+    const vec3 side = vec3(float(MARCHED_SIDE));
     const vec3 low = -ray.origin;
     const vec3 high = side - ray.origin;
     // An inert axis bounds nothing when the origin lies between its planes, and everything when it does not.
@@ -44,12 +52,12 @@ bool enter_root(inout Ray ray) {
     if (t_near > t_far || t_near >= ray.t_end) return false;
     ray.t = t_near;
     ray.voxel = clamp(ivec3(floor(clamp(ray.origin + ray.direction * t_near, vec3(0.0), side))), ivec3(0),
-                      ivec3(ROOT_SIDE - 1));
+                      ivec3(MARCHED_SIDE - 1));
     return true;
 }
 
 // Steps over the aligned cell around the ray's voxel, to the voxel behind it; false when the ray has
-// left the root cube or come to its end.
+// left the marched cube or come to its end.
 bool step_over(inout Ray ray, int shift) {
     const ivec3 low = cell_low(ray.voxel, shift);
     const ivec3 high = low + (cell_side(shift) - 1);
@@ -65,5 +73,5 @@ bool step_over(inout Ray ray, int shift) {
     const ivec3 kept = mix(min(inside, ray.voxel), max(inside, ray.voxel), forward);
     ray.voxel = mix(kept, mix(low - 1, high + 1, forward), leaves);
     ray.t = t_exit;
-    return all(greaterThanEqual(ray.voxel, ivec3(0))) && all(lessThan(ray.voxel, ivec3(ROOT_SIDE))) && t_exit < ray.t_end;
+    return all(greaterThanEqual(ray.voxel, ivec3(0))) && all(lessThan(ray.voxel, ivec3(MARCHED_SIDE))) && t_exit < ray.t_end;
 }

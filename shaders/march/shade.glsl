@@ -13,20 +13,30 @@ struct PixelRay {
     float skipped;
 };
 
+#if WINDOWS
+// In voxels of the window of what the pixel shows.
+vec3 eye_there() { return windows.of[seen_window].eye.xyz; }
+vec4 light_there() { return windows.of[seen_window].light; }
+#else
+vec3 eye_there() { return view.eye.xyz; }
+vec4 light_there() { return view.light; }
+#endif
+
 // `pixel` in the band.
 PixelRay pixel_ray(ivec2 pixel) {
     const vec2 place = (vec2(pixel + ivec2(0, view.band.x)) + 0.5) / vec2(view.size_shadow.xy) * 2.0 - 1.0;
     const vec3 across = place.x * view.right.xyz - place.y * view.up.xyz;
     const float slant = length(view.forward.xyz + across);
     PixelRay ray;
-    ray.origin = view.eye.xyz + view.forward.w * across;
+    ray.origin = eye_there() + view.forward.w * across;
     ray.direction = (view.forward.xyz + across) / slant;
     ray.skipped = view.forward.w * slant;
     return ray;
 }
 
 vec3 direction_to_light(vec3 point) {
-    return view.light.w > 0.5 ? normalize(view.light.xyz - point) : view.light.xyz;
+    const vec4 light = light_there();
+    return light.w > 0.5 ? normalize(light.xyz - point) : light.xyz;
 }
 
 // The gathered normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only

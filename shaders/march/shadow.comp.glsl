@@ -3,6 +3,8 @@
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1
 // defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 WINDOWS=1
 #include "march/march.glsl"
 #include "march/shade.glsl"
 
@@ -27,13 +29,21 @@ float own_reach_of(float side) { return side * clamp(2.5 / receiver_rise, 8.0, 6
 bool visit(inout Ray ray, Sample s) {
     float height = own_height;
     float reach = own_reach;
+#if WINDOWS
+    const float scale = ldexp(1.0, N_SHIFT * (seen_window - ray.window));  // of the receiver's voxels in the ray's
+    height *= scale;
+    reach *= scale;
+    const vec3 from_receiver = s.centre - ray.origin;
+#else
+    const vec3 from_receiver = s.centre - receiver;
+#endif
 #if PROGRESSIVE
     if (stand_in) {  // its own voxels may be larger than they should be
         height = max(height, OWN_HEIGHT * s.side);
         reach = max(reach, own_reach_of(s.side));
     }
 #endif
-    const bool own = s.t < reach && dot(s.centre - receiver, receiver_normal) < height;
+    const bool own = s.t < reach && dot(from_receiver, receiver_normal) < height;
     if (!own) visibility = behind(visibility, coverage_of(s));
     return visibility > OPAQUE_TRANSMITTANCE;
 }
@@ -51,6 +61,10 @@ void main() {
     const uint index = lists[list_in + i];
     const ivec2 pixel = ivec2(int(index) % view.size_shadow.x, int(index) / view.size_shadow.x);
     RayState state = rays[index];
+    const bool starts = all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)));
+#if WINDOWS
+    seen_window = starts ? int(state.voxel_t_weight.z) : stored_seen_window(state);
+#endif
 
     const PixelRay seen = pixel_ray(pixel);
     const float width = view.eye.w * (seen.skipped + state.normal_depth.w);
@@ -64,14 +78,18 @@ void main() {
     own_height = OWN_HEIGHT * side;
     own_reach = own_reach_of(side);
 
-    const float reach = view.light.w > 0.5 ? distance(view.light.xyz, receiver) : 1e30;
+    const vec4 light = light_there();
+    const float reach = light.w > 0.5 ? distance(light.xyz, receiver) : 1e30;
     Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
+#if WINDOWS
+    ray.window = seen_window;
+#endif
     bool inside = true;
-    if (all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)))) {
+    if (starts) {
         visibility = 1.0;
         // Until here all voxels are its own: those that are not lie at least half a diagonal under their centres.
         ray.t = min(0.88 * side / receiver_rise, own_reach);
-        inside = enter_root(ray);
+        inside = enter_windows(ray);
     } else {
         load_position(ray, state);
         visibility = uintBitsToFloat(state.voxel_t_weight.w);

@@ -22,6 +22,16 @@
 #define ROOT_SHIFT (M_SHIFT + N_SHIFT * MAX_LEVEL)
 #define ROOT_SIDE (1 << ROOT_SHIFT)
 
+// Rays go through windows of 2^3 cubes from which descents start (windows.glsl), or there is one cube, the root.
+#ifndef WINDOWS
+#define WINDOWS 0
+#endif
+#if WINDOWS
+#define MARCHED_SIDE (2 * ROOT_SIDE)
+#else
+#define MARCHED_SIDE ROOT_SIDE
+#endif
+
 int cell_side(int shift) { return 1 << shift; }
 // Number of the cell of that size that a voxel is in, along each axis.
 ivec3 cell_of(ivec3 voxel, int shift) { return voxel >> shift; }
