@@ -76,6 +76,9 @@ struct TreeOptions {
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
+    /// Rays start where the tree says that there may be something, and none is made where there is nothing.
+    /// The picture is the same without it, only slower.
+    bool block_starts = true;
 };
 
 /// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended

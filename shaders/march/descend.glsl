@@ -1,12 +1,13 @@
 // Down the tree, from its root to the tile that a ray asks for.
 // The brick that a ray is in.
 struct Place {
-    int slot;         // -1: none
-    int tile_shift;   // log2 of the tile's side
+    int slot;        // -1: none
+    int tile_shift;  // log2 of the tile's side
 #if PROGRESSIVE
-    int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in
+    int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands
+                      // in
 #endif
-    uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
+    uvec2 summary;  // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
 };
 
 // Log2 of a voxel's side.
@@ -47,9 +48,21 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 }
 #endif
 
+// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far
+// the whole tile is away: whatever way the ray came and wherever it started, it sees the same.
+bool shows(Ray ray, int tile_shift) {
+    const float voxel_side = float(cell_side(tile_shift - M_SHIFT));
+#if RAYS_WIDEN
+    const vec3 low = vec3(cell_low(ray.voxel, tile_shift)) - ray.origin;
+    const vec3 away = max(max(low, -(low + float(cell_side(tile_shift)))), vec3(0.0));
+    return voxel_side <= ray.cone_base + ray.cone_slope * length(away);
+#else
+    return voxel_side <= ray.cone_base;
+#endif
+}
+
 // Finds the tile that the ray's cone asks for at its voxel: kd-restart.
 int descend(Ray ray, out Place place, out int empty_shift) {
-    const float width = ray.cone_base + ray.cone_slope * ray.t;
     uint entry = 0u;
     uvec4 node = texelFetch(nodes, 0);
     place.slot = -1;
@@ -64,7 +77,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     Ancestor ancestor = Ancestor(-1, ROOT_SHIFT);
 #endif
     for (int level = 0; level < MAX_LEVEL; ++level) {
-        if (float(cell_side(place.tile_shift - M_SHIFT)) <= width) break;
+        if (shows(ray, place.tile_shift)) break;
         const ivec3 c = place_in(ray.voxel, place.tile_shift - N_SHIFT, N_SHIFT);
         const int empty = empty_child_shift(node, c);
         if (empty >= 0) {
@@ -72,8 +85,10 @@ int descend(Ray ray, out Place place, out int empty_shift) {
             return DESCENT_EMPTY;
         }
 #if PROGRESSIVE
-        if (brick_slot(node) >= 0) ancestor = Ancestor(brick_slot(node), place.tile_shift);
-        else ask(2u * entry_count + entry);
+        if (brick_slot(node) >= 0)
+            ancestor = Ancestor(brick_slot(node), place.tile_shift);
+        else
+            ask(2u * entry_count + entry);
 #endif
         if (!has_children(node)) {
             query(entry, QUERY_CHILDREN);
