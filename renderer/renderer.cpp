@@ -118,7 +118,7 @@ struct Renderer::Parts {
           content(std::move(shown)),
           pool(shape, content->has_color(), options.brick_pool_bytes),
           tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{})),
-          marcher(shape, content->has_color(), {.block_starts = options.block_starts}, shaders) {}
+          marcher(shape, content->has_color(), {options.traversal, options.block_starts}, shaders) {}
 
     void converge(const std::function<void(double)>& progress, double pixels, double pixels_before);
     void serve(std::vector<std::uint32_t> queries);

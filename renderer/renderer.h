@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "renderer/march/traversal.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 
@@ -76,6 +77,7 @@ struct TreeOptions {
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
+    Traversal traversal = Traversal::mini_stack;
     /// Rays start where the tree says that there may be something, and none is made where there is nothing.
     /// The picture is the same without it, only slower.
     bool block_starts = true;

@@ -19,13 +19,23 @@ constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
 constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
 constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t);
 
+static_assert(int(Traversal::restart) == TRAVERSAL_RESTART &&
+              int(Traversal::stackless) == TRAVERSAL_STACKLESS &&
+              int(Traversal::mini_stack) == TRAVERSAL_MINI_STACK);
+
+gl::Defines defines_of(const TreeShape& shape, bool has_color, const MarchOptions& options) {
+    gl::Defines defines = shape.defines(has_color);
+    defines.emplace_back("TRAVERSAL", std::to_string(int(options.traversal)));
+    return defines;
+}
+
 }  // namespace
 
 Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
                  const gl::ShaderSource& shaders)
     : options_(options),
       shaders_(shaders),
-      defines_(shape.defines(has_color)),
+      defines_(defines_of(shape, has_color, options)),
       view_(sizeof(interop::MarchView), "view"),
       queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
     (void)primary_program(PassKind::patient);

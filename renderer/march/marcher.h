@@ -9,6 +9,7 @@
 
 #include "gl/buffer.h"
 #include "gl/program.h"
+#include "renderer/march/traversal.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
 #include "shaders/interop/types.h"
@@ -23,6 +24,7 @@ enum class PassKind : std::uint8_t {
 };
 
 struct MarchOptions {
+    Traversal traversal = Traversal::mini_stack;
     bool block_starts = true;  ///< rays start at block_starts(), where there are any
 };
 

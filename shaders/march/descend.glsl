@@ -1,13 +1,12 @@
-// Down the tree, from its root to the tile that a ray asks for.
+// Down the tree, to the tile that a ray asks for.
 // The brick that a ray is in.
 struct Place {
-    int slot;        // -1: none
-    int tile_shift;  // log2 of the tile's side
+    int slot;         // -1: none
+    int tile_shift;   // log2 of the tile's side
 #if PROGRESSIVE
-    int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands
-                      // in
+    int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in
 #endif
-    uvec2 summary;  // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
+    uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
 };
 
 // Log2 of a voxel's side.
@@ -48,8 +47,8 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 }
 #endif
 
-// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far
-// the whole tile is away: whatever way the ray came and wherever it started, it sees the same.
+// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far the whole
+// tile is away: whatever way the ray came and wherever it started, it sees the same.
 bool shows(Ray ray, int tile_shift) {
     const float voxel_side = float(cell_side(tile_shift - M_SHIFT));
 #if RAYS_WIDEN
@@ -61,14 +60,23 @@ bool shows(Ray ray, int tile_shift) {
 #endif
 }
 
-// Finds the tile that the ray's cone asks for at its voxel: kd-restart.
+// Where a descent begins, and what it leaves for the next one.
+#if TRAVERSAL == TRAVERSAL_RESTART
+#include "march/trail_restart.glsl"
+#elif TRAVERSAL == TRAVERSAL_STACKLESS
+#include "march/trail_stackless.glsl"
+#else
+#include "march/trail_mini_stack.glsl"
+#endif
+
+// Finds the tile that the ray's cone asks for at its voxel.
 int descend(Ray ray, out Place place, out int empty_shift) {
-    uint entry = 0u;
-    uvec4 node = texelFetch(nodes, 0);
+    uint entry;
+    uvec4 node;
     place.slot = -1;
-    place.tile_shift = ROOT_SHIFT;
+    place.tile_shift = resume(ray, entry, node);
 #if PROGRESSIVE
-    place.brick_shift = ROOT_SHIFT;
+    place.brick_shift = place.tile_shift;
 #endif
     place.summary = uvec2(0u);
     empty_shift = ROOT_SHIFT;
@@ -77,7 +85,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     Ancestor ancestor = Ancestor(-1, ROOT_SHIFT);
 #endif
     for (int level = 0; level < MAX_LEVEL; ++level) {
-        if (shows(ray, place.tile_shift)) break;
+        if (place.tile_shift == M_SHIFT || shows(ray, place.tile_shift)) break;
+        leave_trail(ray, entry, node, place.tile_shift);
         const ivec3 c = place_in(ray.voxel, place.tile_shift - N_SHIFT, N_SHIFT);
         const int empty = empty_child_shift(node, c);
         if (empty >= 0) {
@@ -85,10 +94,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
             return DESCENT_EMPTY;
         }
 #if PROGRESSIVE
-        if (brick_slot(node) >= 0)
-            ancestor = Ancestor(brick_slot(node), place.tile_shift);
-        else
-            ask(2u * entry_count + entry);
+        if (brick_slot(node) >= 0) ancestor = Ancestor(brick_slot(node), place.tile_shift);
+        else ask(2u * entry_count + entry);
 #endif
         if (!has_children(node)) {
             query(entry, QUERY_CHILDREN);

@@ -1,8 +1,8 @@
 // One thread is one waiting primary ray.
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1
-// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1
-// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=0
+// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2
 #define RAYS_WIDEN 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
@@ -12,13 +12,11 @@
 
 layout(local_size_x = BLOCK_SIDE * BLOCK_SIDE) in;
 
-layout(std430, binding = SSBO_BLOCK_STARTS) readonly buffer BlockStartBlock {
-    BlockStart block_starts[];
-};
+layout(std430, binding = SSBO_BLOCK_STARTS) readonly buffer BlockStartBlock { BlockStart block_starts[]; };
 
 uniform uint ray_count;
-uniform bool first_pass;  // all pixels of the blocks that see anything; else those of the list
-uniform uint list_in;     // words in lists[]
+uniform bool first_pass;     // all pixels of the blocks that see anything; else those of the list
+uniform uint list_in;        // words in lists[]
 uniform uint list_out;
 uniform uint shadow_list;
 
@@ -55,17 +53,15 @@ bool needs_shadow_ray(PixelRay seen) {
 }
 
 void main() {
-    const uint i =
-        gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= ray_count) return;
     ivec2 pixel;
     BlockStart start = BlockStart(0u, 0.0, 1e30);
     if (first_pass) {
         const int blocks = (view.size_shadow.x + BLOCK_SIDE - 1) / BLOCK_SIDE;
-        start = block_starts[i / 64u];
+        start = block_starts[i / uint(BLOCK_SIDE * BLOCK_SIDE)];
         const int block = int(start.block);
-        pixel = ivec2(block % blocks, block / blocks) * BLOCK_SIDE +
-                ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
+        pixel = ivec2(block % blocks, block / blocks) * BLOCK_SIDE + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
         if (pixel.x >= view.size_shadow.x || pixel.y >= view.band.y) return;
     } else {
         const int p = int(lists[list_in + i]);
@@ -73,8 +69,7 @@ void main() {
     }
     const uint index = uint(pixel.y * view.size_shadow.x + pixel.x);
     const PixelRay seen = pixel_ray(pixel);
-    Ray ray = make_ray(seen.origin, seen.direction, start.far - seen.skipped, view.eye.w * seen.skipped,
-                       view.eye.w);
+    Ray ray = make_ray(seen.origin, seen.direction, start.far - seen.skipped, view.eye.w * seen.skipped, view.eye.w);
 
     bool inside = true;
     if (first_pass) {

@@ -1,14 +1,14 @@
 // A ray, and its steps from cell to cell.
 struct Ray {
     vec3 origin;
-    vec3 direction;  // unit
-    vec3 inverse;    // 1 / direction; 0 where inert
-    bvec3 inert;     // the ray never crosses a plane of this axis: the component is 0, -0 or denormal
-    ivec3 positive;  // 1 where the direction is positive
-    float t;         // distance so far
+    vec3 direction;       // unit
+    vec3 inverse;         // 1 / direction; 0 where inert
+    bvec3 inert;          // the ray never crosses a plane of this axis: the component is 0, -0 or denormal
+    ivec3 positive;       // 1 where the direction is positive
+    float t;              // distance so far
     float t_end;
-    ivec3 voxel;      // finest-level voxel that the ray is in
-    float cone_base;  // pixel width at t is cone_base + cone_slope * t
+    ivec3 voxel;          // finest-level voxel that the ray is in
+    float cone_base;      // pixel width at t is cone_base + cone_slope * t
     float cone_slope;
 };
 
@@ -34,8 +34,7 @@ bool enter_root(inout Ray ray) {
     const vec3 high = side - ray.origin;
     // An inert axis bounds nothing when the origin lies between its planes, and everything when it does not.
     const bvec3 outside = notEqual(lessThanEqual(low, vec3(0.0)), greaterThanEqual(high, vec3(0.0)));
-    if (any(bvec3(ray.inert.x && outside.x, ray.inert.y && outside.y, ray.inert.z && outside.z)))
-        return false;
+    if (any(bvec3(ray.inert.x && outside.x, ray.inert.y && outside.y, ray.inert.z && outside.z))) return false;
     const vec3 ta = mix(low * ray.inverse, vec3(-1e30), ray.inert);
     const vec3 tb = mix(high * ray.inverse, vec3(1e30), ray.inert);
     const vec3 near = min(ta, tb);
@@ -49,16 +48,14 @@ bool enter_root(inout Ray ray) {
     return true;
 }
 
-// After a start inside the root cube: rounding must not have carried the voxel over a plane that the ray, by
-// what step_over() computes, has still before it. So a ray that starts late takes the way of one that started
-// early.
+// After a start inside the root cube: rounding must not have carried the voxel over a plane that the ray, by what
+// step_over() computes, has still before it. So a ray that starts late takes the way of one that started early.
 void stay_behind_planes(inout Ray ray) {
     const bvec3 forward = equal(ray.positive, ivec3(1));
-    const vec3 t = mix((vec3(mix(ray.voxel + 1, ray.voxel, forward)) - ray.origin) * ray.inverse, vec3(-1e30),
-                       ray.inert);
-    const ivec3 back = mix(ivec3(1), ivec3(-1), forward);
-    ray.voxel =
-        clamp(ray.voxel + mix(ivec3(0), back, greaterThan(t, vec3(ray.t))), ivec3(0), ivec3(ROOT_SIDE - 1));
+    const vec3 bound = vec3(mix(ray.voxel + 1, ray.voxel, forward));
+    const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(-1e30), ray.inert);
+    const ivec3 back = mix(ivec3(0), mix(ivec3(1), ivec3(-1), forward), greaterThan(t, vec3(ray.t)));
+    ray.voxel = clamp(ray.voxel + back, ivec3(0), ivec3(ROOT_SIDE - 1));
 }
 
 // Steps over the aligned cell around the ray's voxel, to the voxel behind it; false when the ray has
@@ -78,6 +75,5 @@ bool step_over(inout Ray ray, int shift) {
     const ivec3 kept = mix(min(inside, ray.voxel), max(inside, ray.voxel), forward);
     ray.voxel = mix(kept, mix(low - 1, high + 1, forward), leaves);
     ray.t = t_exit;
-    return all(greaterThanEqual(ray.voxel, ivec3(0))) && all(lessThan(ray.voxel, ivec3(ROOT_SIDE))) &&
-           t_exit < ray.t_end;
+    return all(greaterThanEqual(ray.voxel, ivec3(0))) && all(lessThan(ray.voxel, ivec3(ROOT_SIDE))) && t_exit < ray.t_end;
 }
