@@ -61,6 +61,17 @@ void check(const View& view) {
     }
 }
 
+/// A pixel that shows nothing else, as write_pixel() in shade.glsl would encode it.
+std::uint32_t background_pixel(const glm::vec3& linear) {
+    std::uint32_t pixel = 0;
+    for (int channel = 0; channel < 3; ++channel) {
+        const double c = std::clamp(double(linear[channel]), 0.0, 1.0);
+        const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+        pixel |= std::uint32_t(std::lround(255.0 * encoded)) << (8 * channel);
+    }
+    return pixel;
+}
+
 void check_anchor(const std::optional<Tile>& anchor, const TreeShape& shape) {
     if (!anchor) return;
     const bool has_level = anchor->level >= 0 && anchor->level <= shape.max_level;
@@ -163,7 +174,7 @@ struct Renderer::Parts {
           content(std::move(shown)),
           pool(shape, content->has_color(), options.brick_pool_bytes),
           tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{})),
-          marcher(shape, content->has_color(), shaders) {}
+          marcher(shape, content->has_color(), {options.traversal, options.block_starts}, shaders) {}
 
     [[nodiscard]] interop::MarchView march_view_of(const View& view);
     void find_tiles_asked_for(const std::vector<std::uint32_t>& entries);
@@ -407,7 +418,8 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
     Image image{view.width, rows.count, {}};
     const int end = rows.first + rows.count;
     for (int row = rows.first; row < end; row += band_rows) {
-        marched.band = glm::ivec4(row, std::min(band_rows, end - row), int(view.show), 0);
+        marched.band = glm::ivec4(row, std::min(band_rows, end - row), int(view.show),
+                                  int(background_pixel(view.background)));
         parts.marcher.begin_frame(marched, parts.tree, parts.pool);
         march_band(row);
         std::vector<std::uint8_t> band = parts.marcher.read_image();

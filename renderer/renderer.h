@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "renderer/march/traversal.h"
 #include "renderer/pool/tree_shape.h"
 #include "renderer/produce/content.h"
 #include "scenes/scene.h"
@@ -84,6 +85,10 @@ struct TreeOptions {
     std::optional<int> max_level = std::nullopt;
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
+    Traversal traversal = Traversal::mini_stack;
+    /// Rays start where the tree says that there may be something, and none is made where there is nothing.
+    /// The picture is the same without it, only slower.
+    bool block_starts = true;
 };
 
 /// @throws Error (Fault::usage) for a shape that cannot work.

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "gl/limits.h"
+#include "renderer/march/block_starts.h"
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
 
@@ -21,11 +22,28 @@ constexpr std::size_t window_header_bytes = sizeof(glm::ivec4);
 constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
 constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t);
 
+static_assert(int(Traversal::restart) == TRAVERSAL_RESTART &&
+              int(Traversal::stackless) == TRAVERSAL_STACKLESS &&
+              int(Traversal::mini_stack) == TRAVERSAL_MINI_STACK);
+
+gl::Defines defines_of(const TreeShape& shape, bool has_color, const MarchOptions& options) {
+    gl::Defines defines = shape.defines(has_color);
+    defines.emplace_back("TRAVERSAL", std::to_string(int(options.traversal)));
+    return defines;
+}
+
+/// Rays in windows begin their descents at the window's tiles, and the eye is never far from those.
+MarchOptions options_for(const TreeShape& shape, const MarchOptions& options) {
+    return shape.has_windows() ? MarchOptions{Traversal::restart, false} : options;
+}
+
 }  // namespace
 
-Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders)
-    : shaders_(shaders),
-      defines_(shape.defines(has_color)),
+Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
+                 const gl::ShaderSource& shaders)
+    : options_(options_for(shape, options)),
+      shaders_(shaders),
+      defines_(defines_of(shape, has_color, options_)),
       view_(sizeof(interop::MarchView), "view"),
       queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
     if (shape.has_windows())
@@ -82,6 +100,13 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         usage_.fill(0);
     }
     view_.write(0, &view, sizeof(view));
+    const std::vector<interop::BlockStart> starts =
+        options_.block_starts ? block_starts(view, tree) : all_block_starts(view);
+    start_count_ = starts.size();
+    if (starts_.size_bytes() < starts.size() * sizeof(starts[0]))
+        starts_ = gl::Buffer(capacity_ * sizeof(starts[0]), "block starts");
+    starts_.write(0, starts.data(), starts.size() * sizeof(starts[0]));
+    image_.fill(0, pixels * sizeof(std::uint32_t), std::uint32_t(view.band.w));
     first_pass_ = true;
     show_tree_ = view.band.z != SHOW_SURFACE;
     pauses_ = 0;
@@ -110,14 +135,15 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     queries_.bind_storage(SSBO_QUERIES);
     usage_.bind_storage(SSBO_USAGE);
     image_.bind_storage(SSBO_IMAGE);
+    starts_.bind_storage(SSBO_BLOCK_STARTS);
     tree.bind_for_reading();
     pool.bind_for_reading();
 
     const std::uint32_t old_shadow = waiting_shadow_;
-    const glm::ivec2 blocks = (size_ + 7) / 8;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
     if (old_shadow != 0) run({shadow_program(kind), true, old_shadow}, round, pool, kind);
-    const std::uint32_t primary = first_pass_ ? std::uint32_t(blocks.x * blocks.y) * 64U : waiting_primary_;
+    const std::uint32_t primary =
+        first_pass_ ? std::uint32_t(start_count_ * BLOCK_SIDE * BLOCK_SIDE) : waiting_primary_;
     if (primary != 0) run({primary_program(kind), false, primary}, round, pool, kind);
     first_pass_ = false;
     list_side_ ^= 1;

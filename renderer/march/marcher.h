@@ -9,6 +9,7 @@
 
 #include "gl/buffer.h"
 #include "gl/program.h"
+#include "renderer/march/traversal.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
 #include "shaders/interop/types.h"
@@ -20,6 +21,11 @@ enum class PassKind : std::uint8_t {
     patient,      ///< a ray waits for the tile that it asks for
     progressive,  ///< the same; rays also ask for the bricks of the nodes that they pass
     stand_in,     ///< no ray waits: the nearest ancestor's brick is shown
+};
+
+struct MarchOptions {
+    Traversal traversal = Traversal::mini_stack;
+    bool block_starts = true;  ///< rays start at block_starts(), where there are any
 };
 
 /// What one pass of rays came back with.
@@ -40,7 +46,8 @@ struct PassResult {
 /// query buffer (Crassin et al. 2008, sections 5.1 to 5.3).
 class Marcher {
 public:
-    Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders);
+    Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
+            const gl::ShaderSource& shaders);
 
     /// Rows of a picture that are marched at once: as many as the driver's largest buffer holds ray states
     /// for.
@@ -76,6 +83,7 @@ private:
     void run(const Dispatch& dispatch, std::uint32_t round, const BrickPool& pool, PassKind kind) const;
     [[nodiscard]] interop::MarchCounters read_counters() const;
 
+    MarchOptions options_;
     gl::ShaderSource shaders_;
     gl::Defines defines_;
     std::array<gl::Program, 4> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE
@@ -87,6 +95,8 @@ private:
     gl::Buffer queries_;
     gl::Buffer usage_;
     gl::Buffer image_;
+    gl::Buffer starts_;
+    std::size_t start_count_ = 0;
     glm::ivec2 size_{0};
     std::size_t capacity_ = 0;  // pixels that the buffers hold
     std::uint32_t query_bits_offset_ = 0;

@@ -106,6 +106,14 @@
 // A mean normal that looks away from the viewer by less than this (cosine) belongs to a silhouette, not to a back side.
 #define SILHOUETTE_BEND 0.35
 
+// How a ray finds its next tile; in this order in renderer/march/traversal.h.
+#define TRAVERSAL_RESTART 0
+#define TRAVERSAL_STACKLESS 1
+#define TRAVERSAL_MINI_STACK 2
+
+// Rays of a block of BLOCK_SIDE^2 pixels start together (renderer/march/block_starts.h).
+#define BLOCK_SIDE 8
+
 // What a picture shows; in this order in renderer.h.
 #define SHOW_SURFACE 0
 #define SHOW_LEVELS 1

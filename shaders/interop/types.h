@@ -109,7 +109,8 @@ struct MarchView {
     vec4 background;
     vec4 surface_color;    // base colour everywhere, when the pool holds none
     ivec4 size_shadow;     // xy: pixels of the picture; z: 1 = trace shadow rays
-    ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone; z: SHOW_*
+    ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone; z: SHOW_*;
+                           // w: a pixel of the background
 };
 
 // 2^3 tiles of one level, with the eye among them. Lengths in its own voxels, positions from its low corner.
@@ -125,6 +126,13 @@ struct RayState {
     vec4 color;            // rgb: gathered, premultiplied; a: transmittance
     vec4 normal_depth;     // xyz: gathered normal; w: distance of the voxel that weighs most
     uvec4 voxel_t_weight;  // xy: packed voxel; z, w: bits of floats: distance; the greatest weight, or the light's visibility
+};
+
+// A block of BLOCK_SIDE^2 pixels, and where its rays may meet anything.
+struct BlockStart {
+    uint block;            // number in the band, row after row
+    float near;            // distances from the eye
+    float far;
 };
 
 struct MarchCounters {
@@ -144,6 +152,7 @@ static_assert(sizeof(MarchView) == 160, "GLSL sees another layout");
 static_assert(sizeof(MarchWindow) == 80, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
 static_assert(sizeof(MarchCounters) == 20, "GLSL sees another layout");
+static_assert(sizeof(BlockStart) == 12, "GLSL sees another layout");
 static_assert(sizeof(DeformItem) == 32, "GLSL sees another layout");
 static_assert(sizeof(DeformInfluences) == 24, "GLSL sees another layout");
 static_assert(sizeof(DeformTarget) == 16, "GLSL sees another layout");

@@ -1,4 +1,4 @@
-// Down the tree, from its root to the tile that a ray asks for.
+// Down the tree, to the tile that a ray asks for.
 // The brick that a ray is in.
 struct Place {
     int slot;         // -1: none
@@ -47,9 +47,32 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 }
 #endif
 
-// Finds the tile that the ray's cone asks for at its voxel: kd-restart, from the root or from a window's tile.
+// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far the whole
+// tile is away: whatever way the ray came and wherever it started, it sees the same.
+bool shows(Ray ray, int tile_shift) {
+    const float voxel_side = float(cell_side(tile_shift - M_SHIFT));
+#if RAYS_WIDEN
+    const vec3 low = vec3(cell_low(ray.voxel, tile_shift)) - ray.origin;
+    const vec3 away = max(max(low, -(low + float(cell_side(tile_shift)))), vec3(0.0));
+    return voxel_side <= ray.cone_base + ray.cone_slope * length(away);
+#else
+    return voxel_side <= ray.cone_base;
+#endif
+}
+
+// Where a descent begins, and what it leaves for the next one. With windows, at the window's tile.
+#if WINDOWS || TRAVERSAL == TRAVERSAL_RESTART
+#include "march/trail_restart.glsl"
+#elif TRAVERSAL == TRAVERSAL_STACKLESS
+#include "march/trail_stackless.glsl"
+#else
+#include "march/trail_mini_stack.glsl"
+#endif
+
+// Finds the tile that the ray's cone asks for at its voxel.
 int descend(Ray ray, out Place place, out int empty_shift) {
-    const float width = ray.cone_base + ray.cone_slope * ray.t;
+    uint entry;
+    uvec4 node;
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
 #if PROGRESSIVE
@@ -58,7 +81,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     place.summary = uvec2(0u);
     empty_shift = ROOT_SHIFT;
 #if WINDOWS
-    uint entry = window_tile(ray);
+    entry = window_tile(ray);
     if (entry == WINDOW_EMPTY) return DESCENT_EMPTY;
     if ((entry & WINDOW_MISSING) != 0u) {
         query(entry & ~WINDOW_MISSING, QUERY_CHILDREN);
@@ -67,16 +90,20 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #endif
         return DESCENT_MISSING;
     }
+    node = texelFetch(nodes, int(entry));
 #else
-    uint entry = 0u;
+    place.tile_shift = resume(ray, entry, node);
+#if PROGRESSIVE
+    place.brick_shift = place.tile_shift;
 #endif
-    uvec4 node = texelFetch(nodes, int(entry));
+#endif
     if (MAX_LEVEL > 0 && has_no_child(node)) return DESCENT_EMPTY;  // nothing in the whole scene
 #if PROGRESSIVE
     Ancestor ancestor = Ancestor(-1, ROOT_SHIFT);
 #endif
     for (int level = 0; level < MAX_LEVEL; ++level) {
-        if (float(cell_side(place.tile_shift - M_SHIFT)) <= width) break;
+        if (place.tile_shift == M_SHIFT || shows(ray, place.tile_shift)) break;
+        leave_trail(ray, entry, node, place.tile_shift);
         const ivec3 c = place_in(ray.voxel, place.tile_shift - N_SHIFT, N_SHIFT);
         const int empty = empty_child_shift(node, c);
         if (empty >= 0) {

@@ -1,14 +1,15 @@
 // The ray-marcher's one loop. The includer supplies visit(); primary and shadow rays differ only in that.
 //
-// The tree is walked by restart from the root (kd-restart; Crassin et al. 2008, section 5.1): a ray finds the tile that
-// its cone asks for, marches its brick, and starts again behind it. Progress is by integer neighbour steps: every step
+// A ray finds the tile that its cone asks for, marches its brick, and looks for the next tile behind it (Crassin et al.
+// 2008, section 5.1), in one of several ways (TRAVERSAL; descend.glsl). Progress is by integer neighbour steps: every step
 // moves one coordinate of `voxel` by at least one in the ray's direction, so no epsilon is needed and no ray can stall.
 //
 // With PROGRESSIVE, for frames that must not take long, rays also ask for the bricks of the nodes that they pass, without
 // waiting for them; and when time is up (stand_in), what is missing is shown by the nearest ancestor that has a brick.
 //
-// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth, or with WINDOWS that under a window's tiles), HAS_COLOR and
-// PROGRESSIVE; WINDOWS for trees whose voxels a ray cannot count (windows.glsl).
+// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth, or with WINDOWS that under a window's tiles), HAS_COLOR,
+// PROGRESSIVE and TRAVERSAL; WINDOWS for trees whose voxels a ray cannot count (windows.glsl); and of the includer
+// RAYS_WIDEN: whether cone_slope is other than 0.
 #include "march/buffers.glsl"
 #include "march/tree_cells.glsl"
 #include "march/ray.glsl"
@@ -80,6 +81,7 @@ int march(inout Ray ray) {
 #endif
     place.summary = uvec2(0u);
     int turns = 0;
+    forget_trail();
     for (;;) {
         ++turns;
         const int found = seek(ray, place, turns);

@@ -1,20 +1,23 @@
 // One thread is one waiting primary ray.
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1
-// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1
-// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0
-// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 WINDOWS=1
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=0
+// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=0 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=0 WINDOWS=1
+#define RAYS_WIDEN 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #if SHOW_TREE
 #include "march/show_tree.glsl"
 #endif
 
-layout(local_size_x = 64) in;
+layout(local_size_x = BLOCK_SIDE * BLOCK_SIDE) in;
+
+layout(std430, binding = SSBO_BLOCK_STARTS) readonly buffer BlockStartBlock { BlockStart block_starts[]; };
 
 uniform uint ray_count;
-uniform bool first_pass;     // all pixels, in 8x8 blocks; else those of the list
+uniform bool first_pass;     // all pixels of the blocks that see anything; else those of the list
 uniform uint list_in;        // words in lists[]
 uniform uint list_out;
 uniform uint shadow_list;
@@ -62,10 +65,12 @@ void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= ray_count) return;
     ivec2 pixel;
+    BlockStart start = BlockStart(0u, 0.0, 1e30);
     if (first_pass) {
-        const int blocks = (view.size_shadow.x + 7) / 8;
-        const int block = int(i / 64u);
-        pixel = ivec2(block % blocks, block / blocks) * 8 + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
+        const int blocks = (view.size_shadow.x + BLOCK_SIDE - 1) / BLOCK_SIDE;
+        start = block_starts[i / uint(BLOCK_SIDE * BLOCK_SIDE)];
+        const int block = int(start.block);
+        pixel = ivec2(block % blocks, block / blocks) * BLOCK_SIDE + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
         if (pixel.x >= view.size_shadow.x || pixel.y >= view.band.y) return;
     } else {
         const int p = int(lists[list_in + i]);
@@ -73,7 +78,7 @@ void main() {
     }
     const uint index = uint(pixel.y * view.size_shadow.x + pixel.x);
     const PixelRay seen = pixel_ray(pixel);
-    Ray ray = make_ray(seen.origin, seen.direction, 1e30, view.eye.w * seen.skipped, view.eye.w);
+    Ray ray = make_ray(seen.origin, seen.direction, start.far - seen.skipped, view.eye.w * seen.skipped, view.eye.w);
 #if WINDOWS
     ray.from_eye = true;
 #endif
@@ -83,7 +88,11 @@ void main() {
         state.color = vec4(0.0, 0.0, 0.0, 1.0);
         state.normal_depth = vec4(0.0);
         state.voxel_t_weight = uvec4(0u);
+        ray.t = max(start.near - seen.skipped, 0.0);
         inside = enter_windows(ray);
+#if !WINDOWS
+        stay_behind_planes(ray);
+#endif
     } else {
         state = rays[index];
         load_position(ray, state);

@@ -52,7 +52,7 @@ vec3 facing_normal(RayState state, vec3 direction) {
 
 void write_pixel(ivec2 pixel, RayState state, float visibility) {
     const float alpha = 1.0 - state.color.a;
-    vec3 color = view.background.rgb;
+    uint encoded = uint(view.band.w);
     if (alpha > 0.0) {
         const PixelRay seen = pixel_ray(pixel);
         const vec3 normal = facing_normal(state, seen.direction);
@@ -60,7 +60,8 @@ void write_pixel(ivec2 pixel, RayState state, float visibility) {
         const float facing = max(dot(normal, direction_to_light(point)), 0.0);
         const float sky = view.light_color.w * (0.75 + 0.25 * normal.y);
         const vec3 light = view.light_color.rgb * (sky + (1.0 - view.light_color.w) * facing * visibility);
-        color = state.color.rgb * light + state.color.a * view.background.rgb;
+        const vec3 color = state.color.rgb * light + state.color.a * view.background.rgb;
+        encoded = packUnorm4x8(vec4(srgb_from_linear(color), alpha));
     }
-    image_rgba8[pixel.y * view.size_shadow.x + pixel.x] = packUnorm4x8(vec4(srgb_from_linear(color), alpha));
+    image_rgba8[pixel.y * view.size_shadow.x + pixel.x] = encoded;
 }

@@ -35,6 +35,10 @@
 int cell_side(int shift) { return 1 << shift; }
 // Number of the cell of that size that a voxel is in, along each axis.
 ivec3 cell_of(ivec3 voxel, int shift) { return voxel >> shift; }
+bool same_cell(ivec3 a, ivec3 b, int shift) {
+    const ivec3 differ = a ^ b;
+    return (differ.x | differ.y | differ.z) >> min(shift, 31) == 0;
+}
 // The first voxel of that cell.
 ivec3 cell_low(ivec3 voxel, int shift) { return (voxel >> shift) << shift; }
 // Place of that cell in the cell that is `up` powers larger.

@@ -1,0 +1,177 @@
+#include "renderer/march/block_starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "shaders/interop/config.h"
+
+namespace cairn::renderer {
+namespace {
+
+using glm::dvec3;
+
+/// A part of the root cube, in voxels of the finest level.
+struct Box {
+    dvec3 low, high;
+};
+
+/// Pixels around a box that count as covered, for the rounding of directions.
+constexpr double pixel_margin = 0.25;
+/// The same for positions, as a share of the largest coordinate: a few steps of a float.
+constexpr double place_margin = 0x1p-21;
+
+class BlockGrid {
+public:
+    explicit BlockGrid(const interop::MarchView& view, double root_side)
+        : view_(view),
+          forward_(view.forward),
+          eye_(dvec3(view.eye) - double(view.forward.w) * forward_),
+          across_(dvec3(view.right) / glm::dot(dvec3(view.right), dvec3(view.right))),
+          down_(dvec3(view.up) / -glm::dot(dvec3(view.up), dvec3(view.up))),
+          half_size_(0.5 * view.size_shadow.x, 0.5 * view.size_shadow.y),
+          slack_(place_margin * (root_side + glm::length(dvec3(view.eye)))),
+          count_((view.size_shadow.x + BLOCK_SIDE - 1) / BLOCK_SIDE,
+                 (view.band.y + BLOCK_SIDE - 1) / BLOCK_SIDE),
+          near_(std::size_t(count_.x) * std::size_t(count_.y), std::numeric_limits<double>::infinity()),
+          far_(near_.size(), 0.0) {}
+
+    /// Width of a pixel's cone at this distance from the eye.
+    [[nodiscard]] double cone_width(double distance) const { return double(view_.eye.w) * distance; }
+    [[nodiscard]] double distance_to(const Box& box) const {
+        return glm::length(glm::max(glm::max(box.low - eye_, eye_ - box.high), dvec3(0.0)));
+    }
+
+    /// Does any ray of the band come near the box?
+    [[nodiscard]] bool sees(const Box& box) const {
+        const Rectangle r = project(box);
+        return r.low.x <= r.high.x && r.low.y <= r.high.y;
+    }
+
+    void add(const Box& box) {
+        const Rectangle r = project(box);
+        if (r.low.x > r.high.x || r.low.y > r.high.y) return;
+        const double near = distance_to(box) * (1.0 - 1e-6) - 2.0 * slack_;
+        const double far =
+            glm::length(glm::max(glm::abs(box.low - eye_), glm::abs(box.high - eye_))) * (1.0 + 1e-6) +
+            2.0 * slack_;
+        for (int y = r.low.y / BLOCK_SIDE; y <= r.high.y / BLOCK_SIDE; ++y) {
+            for (int x = r.low.x / BLOCK_SIDE; x <= r.high.x / BLOCK_SIDE; ++x) {
+                const std::size_t block = std::size_t(y) * std::size_t(count_.x) + std::size_t(x);
+                near_[block] = std::min(near_[block], near);
+                far_[block] = std::max(far_[block], far);
+            }
+        }
+    }
+
+    [[nodiscard]] std::vector<interop::BlockStart> starts() const {
+        std::vector<interop::BlockStart> starts;
+        for (std::size_t block = 0; block < near_.size(); ++block) {
+            if (near_[block] > far_[block]) continue;
+            starts.push_back({interop::uint(block), float(std::max(near_[block], 0.0)), float(far_[block])});
+        }
+        return starts;
+    }
+
+private:
+    /// Pixels of the band, both ends included; empty when low is above high.
+    struct Rectangle {
+        glm::ivec2 low, high;
+    };
+
+    [[nodiscard]] Rectangle project(const Box& box) const {
+        const glm::ivec2 last(view_.size_shadow.x - 1, view_.band.y - 1);
+        glm::dvec2 low(std::numeric_limits<double>::infinity());
+        glm::dvec2 high(-std::numeric_limits<double>::infinity());
+        int behind = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::bvec3 side((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
+            const dvec3 point = glm::mix(box.low - slack_, box.high + slack_, side) - eye_;
+            const double depth = glm::dot(point, forward_);
+            if (depth < 1e-3) {
+                ++behind;
+                continue;
+            }
+            const glm::dvec2 place(glm::dot(point, across_) / depth, glm::dot(point, down_) / depth);
+            const glm::dvec2 pixel = (place + 1.0) * half_size_ - 0.5 - glm::dvec2(0.0, double(view_.band.x));
+            low = glm::min(low, pixel);
+            high = glm::max(high, pixel);
+        }
+        if (behind == 8) return {glm::ivec2(0), glm::ivec2(-1)};
+        // A box that the eye's plane cuts may be anywhere.
+        if (behind != 0) return {glm::ivec2(0), last};
+        low = glm::clamp(glm::ceil(low - pixel_margin), glm::dvec2(0.0), glm::dvec2(last + 1));
+        high = glm::clamp(glm::floor(high + pixel_margin), glm::dvec2(-1.0), glm::dvec2(last));
+        return {glm::ivec2(low), glm::ivec2(high)};
+    }
+
+    const interop::MarchView& view_;
+    dvec3 forward_;
+    dvec3 eye_;
+    dvec3 across_;  ///< with a point from the eye, at depth 1: its place on the picture, [-1, 1]
+    dvec3 down_;
+    glm::dvec2 half_size_;
+    double slack_;
+    glm::ivec2 count_;
+    std::vector<double> near_;
+    std::vector<double> far_;
+};
+
+Box box_of(const Tile& tile, double root_side, int n) {
+    const double side = root_side / std::pow(double(n), tile.level);
+    const dvec3 low = dvec3(tile.position) * side;
+    return {low, low + side};
+}
+
+/// Goes down the tree as rays do (descend.glsl), and leaves out what the view does not show.
+class Walk {
+public:
+    Walk(const Tree& tree, BlockGrid& grid)
+        : tree_(tree), grid_(grid), shape_(tree.shape()), root_side_(double(shape_.resolution())) {}
+
+    void visit(std::uint32_t entry) {
+        const interop::NodeEntry& node = tree_.node(entry);
+        const Tile& tile = tree_.tile(entry);
+        const Box box = box_of(tile, root_side_, shape_.n);
+        if (!grid_.sees(box)) return;
+        const double voxel_side = (box.high.x - box.low.x) / shape_.m;
+        const bool may_go_down =
+            tile.level < shape_.max_level && voxel_side > 0.999 * grid_.cone_width(grid_.distance_to(box));
+        if (!may_go_down) {
+            grid_.add(box);
+            return;
+        }
+        for (int child = 0; child < shape_.child_count(); ++child) {
+            if ((node.child_mask[child / 32] >> (child % 32) & 1U) == 0) continue;
+            if (node.children == 0)
+                grid_.add(box_of(child_of(tile, shape_.n, child), root_side_, shape_.n));
+            else
+                visit(node.children + std::uint32_t(child));
+        }
+    }
+
+private:
+    const Tree& tree_;
+    BlockGrid& grid_;
+    TreeShape shape_;
+    double root_side_;
+};
+
+}  // namespace
+
+std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, const Tree& tree) {
+    BlockGrid grid(view, double(tree.shape().resolution()));
+    Walk(tree, grid).visit(0);
+    return grid.starts();
+}
+
+std::vector<interop::BlockStart> all_block_starts(const interop::MarchView& view) {
+    const glm::ivec2 count((view.size_shadow.x + BLOCK_SIDE - 1) / BLOCK_SIDE,
+                           (view.band.y + BLOCK_SIDE - 1) / BLOCK_SIDE);
+    std::vector<interop::BlockStart> starts;
+    for (int block = 0; block < count.x * count.y; ++block)
+        starts.push_back({interop::uint(block), 0.0F, 1e30F});
+    return starts;
+}
+
+}  // namespace cairn::renderer
