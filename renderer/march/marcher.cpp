@@ -32,11 +32,15 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource&
 const gl::Program& Marcher::primary_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
     const int show_tree = show_tree_ ? 1 : 0;
-    gl::Program& program = primary_[std::size_t(progressive + 2 * show_tree)];
+    const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
+    const int proxy = mix_.proxy_span != 0 ? 1 : 0;
+    gl::Program& program = primary_[std::size_t(progressive + 2 * show_tree + 4 * meshes + 8 * proxy)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
         defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
+        if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
+        if (proxy != 0) defines.emplace_back("WITH_PROXY", "");
         program = gl::build_compute(shaders_, "march/primary.comp.glsl", defines);
     }
     return program;
@@ -44,10 +48,12 @@ const gl::Program& Marcher::primary_program(PassKind kind) {
 
 const gl::Program& Marcher::shadow_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
-    gl::Program& program = shadow_[std::size_t(progressive)];
+    const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
+    gl::Program& program = shadow_[std::size_t(progressive + 2 * meshes)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
+        if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
         program = gl::build_compute(shaders_, "march/shadow.comp.glsl", defines);
     }
     return program;
@@ -60,7 +66,9 @@ int Marcher::band_rows(int width, int height) {
     return int(std::min<std::size_t>(std::max<std::size_t>(rows / 8 * 8, 8), std::size_t(height)));
 }
 
-void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool) {
+void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool,
+                          const MarchMix& mix) {
+    mix_ = mix;
     size_ = glm::ivec2(view.size_shadow.x, view.band.y);
     const auto pixels = std::size_t(size_.x) * std::size_t(size_.y);
     if (pixels > capacity_) {
@@ -84,6 +92,26 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     waiting_shadow_ = 0;
 }
 
+void Marcher::bind_mix() const {
+    if (mix_.mesh_nearest != 0) {
+        glBindTextureUnit(TEXTURE_MESH_NEAREST, mix_.mesh_nearest);
+        glBindTextureUnit(TEXTURE_MESH_SURFACE, mix_.mesh_surface);
+    }
+    if (mix_.proxy_span != 0) {
+        glBindTextureUnit(TEXTURE_PROXY_SPAN, mix_.proxy_span);
+        glBindTextureUnit(TEXTURE_PROXY_FACES, mix_.proxy_faces);
+    }
+}
+
+void Marcher::set_mix(const gl::Program& program) const {
+    if (mix_.mesh_nearest != 0) {
+        program.set("mesh_first_row", mix_.mesh_first_row);
+        program.set("mesh_shadows", int(mix_.mesh_shadows));
+        program.set("mesh_own_height", mix_.mesh_own_height);
+    }
+    if (mix_.proxy_span != 0) program.set("proxy_first_row", mix_.proxy_first_row);
+}
+
 PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool, PassKind kind) {
     // Stand-ins are asked for by progressive passes alone.
     const std::size_t query_words =
@@ -100,6 +128,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     image_.bind_storage(SSBO_IMAGE);
     tree.bind_for_reading();
     pool.bind_for_reading();
+    bind_mix();
 
     const std::uint32_t old_shadow = waiting_shadow_;
     const glm::ivec2 blocks = (size_ + 7) / 8;
@@ -107,6 +136,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     if (old_shadow != 0) run({shadow_program(kind), true, old_shadow}, round, pool, kind);
     const std::uint32_t primary = first_pass_ ? std::uint32_t(blocks.x * blocks.y) * 64U : waiting_primary_;
     if (primary != 0) run({primary_program(kind), false, primary}, round, pool, kind);
+    const bool began = first_pass_;
     first_pass_ = false;
     list_side_ ^= 1;
 
@@ -120,6 +150,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     }
     PassResult result;
     result.stood_in = counters.stood_in;
+    result.launched = mix_.proxy_span != 0 ? counters.launched : began ? std::uint32_t(band_pixels()) : 0;
     result.waiting_primary = waiting_primary_ = counters.waiting_primary;
     result.waiting_shadow = waiting_shadow_ = counters.waiting_shadow;
     result.queries = queries_.read_all<std::uint32_t>(std::min<std::size_t>(counters.queries, QUERY_CAPACITY),
@@ -147,6 +178,7 @@ void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool
     program.set("pass_number", round);
     program.set("usage_query_offset", query_bits_offset_);
     program.set("pool_slots", pool.slots());
+    set_mix(program);
     program.use();
     gl::dispatch_threads(dispatch.rays, group_size);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

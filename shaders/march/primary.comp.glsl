@@ -3,10 +3,17 @@
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1
 // defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 WITH_MESHES WITH_PROXY
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 WITH_PROXY
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #if SHOW_TREE
 #include "march/show_tree.glsl"
+#endif
+
+#ifdef WITH_PROXY
+#include "mesh/proxy_span.glsl"
 #endif
 
 layout(local_size_x = 64) in;
@@ -18,8 +25,14 @@ uniform uint list_out;
 uniform uint shadow_list;
 
 RayState state;
+#ifdef WITH_MESHES
+MeshPixel mesh;
+#endif
 
 bool visit(inout Ray ray, Sample s) {
+#ifdef WITH_MESHES
+    if (s.t > mesh.t) return false;
+#endif
     const float left = behind(state.color.a, coverage_of(s));
     const float weight = state.color.a - left;
     vec3 color = view.surface_color.rgb;
@@ -65,13 +78,28 @@ void main() {
     const uint index = uint(pixel.y * view.size_shadow.x + pixel.x);
     const PixelRay seen = pixel_ray(pixel);
     Ray ray = make_ray(seen.origin, seen.direction, 1e30, view.eye.w * seen.skipped, view.eye.w);
+#ifdef WITH_MESHES
+    mesh = mesh_pixel(pixel);
+    ray.t_end = mesh.t;
+#endif
+#ifdef WITH_PROXY
+    const vec2 span = proxy_span_at(pixel);
+    ray.t = span.x;
+    ray.t_end = min(ray.t_end, span.y);
+#endif
 
     bool inside = true;
     if (first_pass) {
         state.color = vec4(0.0, 0.0, 0.0, 1.0);
         state.normal_depth = vec4(0.0);
         state.voxel_t_weight = uvec4(0u);
+#ifdef WITH_PROXY
+        inside = span.x < span.y;
+        if (inside) atomicAdd(counters.launched, 1u);
+        inside = inside && enter_root(ray);
+#else
         inside = enter_root(ray);
+#endif
     } else {
         state = rays[index];
         load_position(ray, state);
@@ -88,12 +116,22 @@ void main() {
             state.color.rgb /= 1.0 - state.color.a;
             state.color.a = 0.0;
         }
-        if (needs_shadow_ray(seen)) {
+        bool waits = needs_shadow_ray(seen);
+#ifdef WITH_MESHES
+        // Until the pixel is written, its place keeps the light that reaches the voxels; negative: not known yet.
+        image_rgba8[index] = floatBitsToUint(waits ? -1.0 : 1.0);
+        waits = waits || mesh_needs_shadow_ray(mesh, seen, state.color.a);
+#endif
+        if (waits) {
             state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
             rays[index] = state;
             lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
         } else {
+#ifdef WITH_MESHES
+            write_pixel(pixel, state, 1.0, mesh, 1.0);
+#else
             write_pixel(pixel, state, 1.0);
+#endif
         }
     }
 }
