@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "app/scene_input.h"
 #include "app/verbs.h"
 #include "app/view_options.h"
+#include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
 
 namespace cairn::app {
@@ -27,12 +29,23 @@ struct Options {
     CommonOptions common;
     std::optional<std::filesystem::path> output;
     ViewOptions view;
+    std::optional<std::string> mesh;   ///< a scene that is drawn as triangles
+    std::optional<std::string> proxy;  ///< a scene whose faces bound the rays
+    bool mesh_shadows = false;
 };
 
 void add_options(CLI::App& verb, Options& options) {
     add_output_option(verb, options.output, {".png"},
                       fmt::format("the picture (default: {} in the current folder)", default_output));
     add_view_options(verb, options.view);
+    verb.add_option("--mesh", options.mesh,
+                    "another scene, or the same, to draw as triangles in the\nsame picture, without voxels")
+        ->type_name("SCENE");
+    verb.add_flag("--mesh-shadows", options.mesh_shadows, "let the voxels cast shadows on those triangles")
+        ->needs("--mesh");
+    verb.add_option("--proxy", options.proxy,
+                    "a closed mesh: only what lies inside it is shown of the\nvoxels")
+        ->type_name("SCENE");
     add_common_options(verb, options.common);
 }
 
@@ -51,6 +64,31 @@ double converged_frame_ms(renderer::Renderer& renderer, const renderer::View& vi
     return *middle;
 }
 
+/// Another scene as triangles: in its rest pose, unless it is the one that is voxelized.
+std::shared_ptr<renderer::MeshRaster> load_mesh(const std::string& scene, const Options& options) {
+    SceneOptions input = options.common.scene;
+    if (scene != input.scene) {
+        input = SceneOptions{};
+        input.scene = scene;
+        input.trust_paths = options.common.scene.trust_paths;
+    }
+    const SceneInput loaded = load_input(input, options.common.report.quiet);
+    return std::make_shared<renderer::MeshRaster>(loaded.scene, loaded.snapshot,
+                                                  options.common.driver.shaders);
+}
+
+renderer::Mix load_mix(const Options& options, Report& report) {
+    renderer::Mix mix;
+    if (options.mesh) {
+        mix.meshes = load_mesh(*options.mesh, options);
+        mix.mesh_shadows = options.mesh_shadows;
+        mix.meshes_are_voxelized = *options.mesh == options.common.scene.scene;
+        report.add("mesh_triangles", mix.meshes->triangle_count());
+    }
+    if (options.proxy) mix.proxy = load_mesh(*options.proxy, options);
+    return mix;
+}
+
 ExitCode run(const Options& options) {
     const bool quiet = options.common.report.quiet;
     const std::filesystem::path output = options.output.value_or(default_output);
@@ -67,6 +105,7 @@ ExitCode run(const Options& options) {
     report.add("context_ms", watch.lap_ms());
     renderer::Renderer renderer(input->scene, input->snapshot, options.view.tree,
                                 options.common.driver.shaders);
+    renderer.set_mix(load_mix(options, report));
     input.reset();  // the renderer has its own copy of what it needs: do not pay twice
     report.add("setup_ms", watch.lap_ms());
 
@@ -90,6 +129,7 @@ ExitCode run(const Options& options) {
     report.add("width", view.width);
     report.add("height", view.height);
     report.add("passes", first.passes);
+    report.add("rays_launched", first.rays_launched);
     report.add("tile_queries", first.tile_queries);
     report.add("bricks_produced", first.bricks_produced);
     report.add("bricks_evicted", first.bricks_evicted);

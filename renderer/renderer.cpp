@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "renderer/march/marcher.h"
 #include "renderer/march/windows.h"
+#include "renderer/mesh/mesh_raster.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
 #include "renderer/produce/surface_content.h"
@@ -184,6 +185,7 @@ struct Renderer::Parts {
     [[nodiscard]] PassResult march(PassKind kind);
     [[nodiscard]] bool serve_until(Clock::time_point deadline, const PassResult& pass);
     void subdivide(std::uint32_t entry);
+    [[nodiscard]] int draw_mix(const interop::MarchView& view, int row);
 
     TreeShape shape;
     std::unique_ptr<Content> content;
@@ -192,6 +194,8 @@ struct Renderer::Parts {
     Marcher marcher;
     std::vector<Window> windows;  ///< of the frame; none where the shape has none
     std::vector<interop::MarchWindow> marched_windows;
+    Mix mix;
+    MarchMix drawn;  ///< of `mix`, around the band that is marched
     std::uint32_t round = 1;
     FrameStatistics statistics;
 };
@@ -219,6 +223,34 @@ TreeShape tree_shape_of(const TreeOptions& options) {
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
+
+void Renderer::set_mix(const Mix& mix) {
+    parts_->mix = mix;
+}
+
+/// Draws what the rays of a row meet beside voxels. Returns the row behind the last that has been drawn.
+int Renderer::Parts::draw_mix(const interop::MarchView& view, int row) {
+    const MarchSpace space{content->grid().origin, content->grid().voxel_size};
+    int end = view.size_shadow.y;
+    drawn = MarchMix{};
+    if (mix.meshes != nullptr) {
+        const MeshSurface mesh = mix.meshes->draw_surface(view, space, row);
+        drawn.mesh_nearest = mesh.nearest;
+        drawn.mesh_surface = mesh.surface;
+        drawn.mesh_first_row = mesh.first_row;
+        drawn.mesh_shadows = mix.mesh_shadows;
+        drawn.mesh_own_height = mix.meshes_are_voxelized ? MESH_OWN_HEIGHT : 0.0F;
+        end = std::min(end, mesh.first_row + mesh.rows);
+    }
+    if (mix.proxy != nullptr) {
+        const MeshSpan span = mix.proxy->draw_span(view, space, row);
+        drawn.proxy_span = span.span;
+        drawn.proxy_faces = span.faces;
+        drawn.proxy_first_row = span.first_row;
+        end = std::min(end, span.first_row + span.rows);
+    }
+    return end;
+}
 
 void Renderer::Parts::subdivide(std::uint32_t entry) {
     if (!tree.wants_children(entry)) return;
@@ -310,6 +342,7 @@ PassResult Renderer::Parts::march(PassKind kind) {
     PassResult pass = marcher.run_pass(round, tree, pool, kind);
     statistics.march_ms += milliseconds_since(start);
     ++statistics.passes;
+    statistics.rays_launched += pass.launched;
     ++round;
     tree.begin_round(round, pass.brick_stamps);
     return pass;
@@ -417,10 +450,11 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
     const int band_rows = Marcher::band_rows(view.width, view.height);
     Image image{view.width, rows.count, {}};
     const int end = rows.first + rows.count;
-    for (int row = rows.first; row < end; row += band_rows) {
-        marched.band = glm::ivec4(row, std::min(band_rows, end - row), int(view.show),
+    for (int row = rows.first; row < end; row += marched.band.y) {
+        const int drawn_end = std::min(parts.draw_mix(marched, row), end);
+        marched.band = glm::ivec4(row, std::min(band_rows, drawn_end - row), int(view.show),
                                   int(background_pixel(view.background)));
-        parts.marcher.begin_frame(marched, parts.tree, parts.pool);
+        parts.marcher.begin_frame(marched, parts.tree, parts.pool, parts.drawn);
         march_band(row);
         std::vector<std::uint8_t> band = parts.marcher.read_image();
         if (image.rgba.empty()) {

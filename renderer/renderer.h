@@ -80,8 +80,8 @@ struct TreeOptions {
     int n = 4;                  ///< children an axis: 2 or 4
     int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
-    /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest voxels
-    /// are at least 2^-60 of the root cube.
+    /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest
+    /// voxels are at least 2^-60 of the root cube.
     std::optional<int> max_level = std::nullopt;
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
@@ -105,7 +105,9 @@ struct Image {
 /// Counters of one `render()`.
 struct FrameStatistics {
     double milliseconds = 0.0;
-    int passes = 0;                  ///< ray-marching passes until nothing was missing
+    std::uint64_t rays_launched =
+        0;           ///< of the pixel blocks that may see anything; with a proxy, of the pixels it covers
+    int passes = 0;  ///< ray-marching passes until nothing was missing
     std::uint64_t tile_queries = 0;  ///< misses that rays reported
     std::uint64_t nodes_subdivided = 0;
     std::uint64_t bricks_produced = 0;
@@ -120,11 +122,30 @@ struct FrameStatistics {
     std::size_t brick_pool_bytes = 0;
 };
 
+class MeshRaster;
+
+/// What is drawn as triangles beside the voxels (renderer/mesh/mesh_raster.h), in the same world.
+struct Mix {
+    /// Shown where it is nearer than the voxels, and through what they leave uncovered; lit like them. A
+    /// voxel counts as nearer when the middle of the ray's way through it is. Meshes cast no shadows.
+    std::shared_ptr<MeshRaster> meshes;
+    bool mesh_shadows = false;  ///< voxels cast shadows on the meshes, when the view has shadows
+    /// The meshes are (also) the voxelized scene: then voxels that touch the triangle at a pixel are its own,
+    /// and cast no shadow on it. Else contact shadows begin at the triangle.
+    bool meshes_are_voxelized = false;
+    /// Rays run only from its first to its last face, or from the eye where more of its faces turn their back
+    /// to the eye than their front (which is so inside a closed mesh). Pixels that it does not cover launch
+    /// no ray. A voxel shows when the ray's way through it reaches into the proxy. Shadow rays do not know
+    /// it: what it hides still casts shadows (Crassin et al. 2008, section 5.4).
+    std::shared_ptr<MeshRaster> proxy;
+};
+
 /// Renders a scene through its voxel cache. Only what rays prove visible is voxelized, no finer than a pixel
 /// shows. Bricks stay in the pools from one frame to the next. Needs the context that was current at its
 /// construction.
 ///
-/// The picture depends on the view alone: not on the pools' sizes, nor on what earlier frames left in them.
+/// The picture depends on the view (and the mix) alone: not on the pools' sizes, nor on what earlier frames
+/// left in them.
 class Renderer {
 public:
     /// The scene and the snapshot are not needed afterwards.
@@ -140,6 +161,9 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
     ~Renderer();
+
+    /// For all pictures from now on; an empty one for voxels alone.
+    void set_mix(const Mix& mix);
 
     /// @param progress  called after each pass with the share of pixels that are done, in [0, 1].
     [[nodiscard]] Image render(const View& view, const std::function<void(double)>& progress = {});

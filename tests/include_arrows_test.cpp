@@ -42,6 +42,7 @@ const std::vector<Folder> folders = {
     {"renderer/pool/", {"renderer/pool/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/produce/",
      {"renderer/produce/", "renderer/pool/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/"}},
+    {"renderer/mesh/", {"renderer/mesh/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/march/",
      {"renderer/march/", "renderer/produce/", "renderer/pool/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/shadow/",

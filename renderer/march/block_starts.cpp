@@ -165,13 +165,29 @@ std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, co
     return grid.starts();
 }
 
-std::vector<interop::BlockStart> all_block_starts(const interop::MarchView& view) {
+namespace {
+
+int block_count(const interop::MarchView& view) {
     const glm::ivec2 count((view.size_shadow.x + BLOCK_SIDE - 1) / BLOCK_SIDE,
                            (view.band.y + BLOCK_SIDE - 1) / BLOCK_SIDE);
+    return count.x * count.y;
+}
+
+}  // namespace
+
+std::vector<interop::BlockStart> all_block_starts(const interop::MarchView& view) {
     std::vector<interop::BlockStart> starts;
-    for (int block = 0; block < count.x * count.y; ++block)
+    for (int block = 0; block < block_count(view); ++block)
         starts.push_back({interop::uint(block), 0.0F, 1e30F});
     return starts;
+}
+
+void add_empty_blocks(const interop::MarchView& view, std::vector<interop::BlockStart>& starts) {
+    std::vector<bool> there(std::size_t(block_count(view)), false);
+    for (const interop::BlockStart& start : starts)
+        there[start.block] = true;
+    for (std::size_t block = 0; block < there.size(); ++block)
+        if (!there[block]) starts.push_back({interop::uint(block), 0.0F, 0.0F});
 }
 
 }  // namespace cairn::renderer

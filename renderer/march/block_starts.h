@@ -23,4 +23,7 @@ namespace cairn::renderer {
 /// Every block of the band, and rays that start at the eye and end behind everything.
 [[nodiscard]] std::vector<interop::BlockStart> all_block_starts(const interop::MarchView& view);
 
+/// Adds the blocks that are left out, with nothing on their rays: for pictures that show more than voxels.
+void add_empty_blocks(const interop::MarchView& view, std::vector<interop::BlockStart>& starts);
+
 }  // namespace cairn::renderer

@@ -55,11 +55,15 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& opt
 const gl::Program& Marcher::primary_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
     const int show_tree = show_tree_ ? 1 : 0;
-    gl::Program& program = primary_[std::size_t(progressive + 2 * show_tree)];
+    const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
+    const int proxy = mix_.proxy_span != 0 ? 1 : 0;
+    gl::Program& program = primary_[std::size_t(progressive + 2 * show_tree + 4 * meshes + 8 * proxy)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
         defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
+        if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
+        if (proxy != 0) defines.emplace_back("WITH_PROXY", "");
         program = gl::build_compute(shaders_, "march/primary.comp.glsl", defines);
     }
     return program;
@@ -67,10 +71,12 @@ const gl::Program& Marcher::primary_program(PassKind kind) {
 
 const gl::Program& Marcher::shadow_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
-    gl::Program& program = shadow_[std::size_t(progressive)];
+    const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
+    gl::Program& program = shadow_[std::size_t(progressive + 2 * meshes)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
+        if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
         program = gl::build_compute(shaders_, "march/shadow.comp.glsl", defines);
     }
     return program;
@@ -83,7 +89,9 @@ int Marcher::band_rows(int width, int height) {
     return int(std::min<std::size_t>(std::max<std::size_t>(rows / 8 * 8, 8), std::size_t(height)));
 }
 
-void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool) {
+void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool,
+                          const MarchMix& mix) {
+    mix_ = mix;
     size_ = glm::ivec2(view.size_shadow.x, view.band.y);
     const auto pixels = std::size_t(size_.x) * std::size_t(size_.y);
     if (pixels > capacity_) {
@@ -100,8 +108,9 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         usage_.fill(0);
     }
     view_.write(0, &view, sizeof(view));
-    const std::vector<interop::BlockStart> starts =
+    std::vector<interop::BlockStart> starts =
         options_.block_starts ? block_starts(view, tree) : all_block_starts(view);
+    if (mix.mesh_nearest != 0) add_empty_blocks(view, starts);
     start_count_ = starts.size();
     if (starts_.size_bytes() < starts.size() * sizeof(starts[0]))
         starts_ = gl::Buffer(capacity_ * sizeof(starts[0]), "block starts");
@@ -118,6 +127,26 @@ void Marcher::set_windows(const std::vector<interop::MarchWindow>& windows) {
     const glm::ivec4 count(int(windows.size()), 0, 0, 0);
     windows_.write(0, &count, sizeof(count));
     windows_.write(window_header_bytes, windows.data(), windows.size() * sizeof(interop::MarchWindow));
+}
+
+void Marcher::bind_mix() const {
+    if (mix_.mesh_nearest != 0) {
+        glBindTextureUnit(TEXTURE_MESH_NEAREST, mix_.mesh_nearest);
+        glBindTextureUnit(TEXTURE_MESH_SURFACE, mix_.mesh_surface);
+    }
+    if (mix_.proxy_span != 0) {
+        glBindTextureUnit(TEXTURE_PROXY_SPAN, mix_.proxy_span);
+        glBindTextureUnit(TEXTURE_PROXY_FACES, mix_.proxy_faces);
+    }
+}
+
+void Marcher::set_mix(const gl::Program& program) const {
+    if (mix_.mesh_nearest != 0) {
+        program.set("mesh_first_row", mix_.mesh_first_row);
+        program.set("mesh_shadows", int(mix_.mesh_shadows));
+        program.set("mesh_own_height", mix_.mesh_own_height);
+    }
+    if (mix_.proxy_span != 0) program.set("proxy_first_row", mix_.proxy_first_row);
 }
 
 PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool, PassKind kind) {
@@ -138,6 +167,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     starts_.bind_storage(SSBO_BLOCK_STARTS);
     tree.bind_for_reading();
     pool.bind_for_reading();
+    bind_mix();
 
     const std::uint32_t old_shadow = waiting_shadow_;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
@@ -145,6 +175,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     const std::uint32_t primary =
         first_pass_ ? std::uint32_t(start_count_ * BLOCK_SIDE * BLOCK_SIDE) : waiting_primary_;
     if (primary != 0) run({primary_program(kind), false, primary}, round, pool, kind);
+    const bool began = first_pass_;
     first_pass_ = false;
     list_side_ ^= 1;
 
@@ -158,6 +189,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     }
     PassResult result;
     result.stood_in = counters.stood_in;
+    result.launched = mix_.proxy_span != 0 ? counters.launched : began ? primary : 0;
     result.waiting_primary = waiting_primary_ = counters.waiting_primary;
     result.waiting_shadow = waiting_shadow_ = counters.waiting_shadow;
     result.queries = queries_.read_all<std::uint32_t>(std::min<std::size_t>(counters.queries, QUERY_CAPACITY),
@@ -185,6 +217,7 @@ void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool
     program.set("pass_number", round);
     program.set("usage_query_offset", query_bits_offset_);
     program.set("pool_slots", pool.slots());
+    set_mix(program);
     program.use();
     gl::dispatch_threads(dispatch.rays, group_size);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -33,6 +33,7 @@ struct PassResult {
     std::uint32_t waiting_primary = 0;  ///< rays that missed a tile or paused
     std::uint32_t waiting_shadow = 0;   ///< the same, and shadow rays not yet started
     std::uint32_t stood_in = 0;         ///< missing tiles that rays did not wait for
+    std::uint32_t launched = 0;  ///< rays that began; all of the band's in its first pass, but for a proxy
     /// 2 * node entry + QUERY_*, or 2 * Tree::entry_count() + entry for a brick that could stand in; each
     /// once.
     std::vector<std::uint32_t> queries;
@@ -40,6 +41,20 @@ struct PassResult {
         query_counts;  ///< rays that ask, by query % QUERY_COUNTS; not of patient passes
     std::vector<std::uint32_t> brick_stamps;  ///< one a slot: the last round whose rays used it
     [[nodiscard]] bool done() const { return waiting_primary == 0 && waiting_shadow == 0; }
+};
+
+/// What the rays of a band meet beside voxels: textures of rows that hold the band's
+/// (renderer/mesh/mesh_raster.h).
+struct MarchMix {
+    GLuint mesh_nearest = 0;  ///< 0: no meshes
+    GLuint mesh_surface = 0;
+    int mesh_first_row = 0;     ///< of the picture, in those
+    bool mesh_shadows = false;  ///< voxels cast shadows on meshes
+    float mesh_own_height =
+        0.0F;               ///< voxels whose centres are no further over a mesh are its own; in their sides
+    GLuint proxy_span = 0;  ///< 0: no proxy
+    GLuint proxy_faces = 0;
+    int proxy_first_row = 0;
 };
 
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
@@ -54,7 +69,8 @@ public:
     [[nodiscard]] static int band_rows(int width, int height);
 
     /// Sets the frame, or a band of it (`view.band`); buffers grow when the bands do.
-    void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool);
+    void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool,
+                     const MarchMix& mix = {});
 
     /// For trees with windows: before each pass, since tiles come and go.
     void set_windows(const std::vector<interop::MarchWindow>& windows);
@@ -86,8 +102,11 @@ private:
     MarchOptions options_;
     gl::ShaderSource shaders_;
     gl::Defines defines_;
-    std::array<gl::Program, 4> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE
-    std::array<gl::Program, 2> shadow_;   ///< PROGRESSIVE
+    void bind_mix() const;
+    void set_mix(const gl::Program& program) const;
+
+    std::array<gl::Program, 16> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * meshes + 8 * proxy
+    std::array<gl::Program, 4> shadow_;    ///< PROGRESSIVE + 2 * meshes
     gl::Buffer view_;
     gl::Buffer windows_;  ///< empty where the tree has none
     gl::Buffer rays_;
@@ -97,6 +116,7 @@ private:
     gl::Buffer image_;
     gl::Buffer starts_;
     std::size_t start_count_ = 0;
+    MarchMix mix_;
     glm::ivec2 size_{0};
     std::size_t capacity_ = 0;  // pixels that the buffers hold
     std::uint32_t query_bits_offset_ = 0;

@@ -55,5 +55,13 @@
 #define TEXTURE_BRICK_MASKS 1
 #define TEXTURE_BRICK_COLOR 2   // or coverage alone
 #define TEXTURE_BRICK_NORMAL 3
+#define TEXTURE_MESH_NEAREST 8   // R32F a pixel: distance of the nearest mesh, MESH_MISS where there is none
+#define TEXTURE_MESH_SURFACE 9   // RGBA32UI a pixel: what is there (shaders/mesh/mesh_surface.glsl)
+#define TEXTURE_PROXY_SPAN 10    // RG32F a pixel: distance of the proxy's first face, minus that of its last
+#define TEXTURE_PROXY_FACES 11   // R32F a pixel: fronts less backs
+
+// Meshes that are rasterized (beside the surface's 0 to 4, and UBO_VIEW).
+#define UBO_MESH_VIEW 1
+#define SSBO_MESH_TRIANGLES 5  // MeshTriangle: a batch of triangles, as this view sees them
 
 #endif

@@ -125,6 +125,16 @@
 #define LEVEL_PHASE_G 4.8
 #define LEVEL_PHASE_B 2.7
 
+// Meshes that are rasterized: triangles a draw call, pixels of a picture that are drawn at once (in whole rows), the
+// distance of what is not there, and how near the eye a mesh may come, in sides of the mesh.
+#define MESH_BATCH_TRIANGLES 262144
+#define MESH_STRIP_PIXELS 4194304
+#define MESH_MISS 1e30
+// A voxel that touches a triangle has its centre at most half a diagonal from its plane; a little more, where the surface
+// bends.
+#define MESH_OWN_HEIGHT 1.125
+#define MESH_NEAREST_PART 9.5367431640625e-7
+
 // A ray stops when less light than this is left: half a step of an 8-bit image.
 #define OPAQUE_TRANSMITTANCE (1.0 / 512.0)
 

@@ -5,6 +5,7 @@
 #ifdef __cplusplus
 #include <glm/glm.hpp>
 namespace cairn::interop {
+using glm::dvec4;
 using glm::ivec4;
 using glm::mat4;
 using glm::uvec2;
@@ -135,12 +136,31 @@ struct BlockStart {
     float far;
 };
 
+// How a mesh stands to the rays of a MarchView. A point of the lattice, p, lies at p * place.w + place.xyz from
+// MarchView.eye, in its units; from there, the rows give what its picture and its depth are in homogeneous coordinates:
+// x to the right, y downwards, both -1 to 1 over the picture, each times w = along + along.w.
+struct MeshView {
+    dvec4 place;
+    dvec4 across;          // xyz: to x
+    dvec4 down;            // xyz: to y; w: the least w that is drawn
+    dvec4 along;           // xyz: to the distance along MarchView.forward; w: MarchView.forward.w
+};
+
+// A triangle, from MarchView.eye and in the units of MarchView.
+struct MeshTriangle {
+    vec4 plane;            // xyz: unit normal of its front, 0 without area; w: its product with the triangle's points
+    vec4 corner;           // xyz: first vertex; w: the least distance of a vertex along MarchView.forward
+    vec4 second;           // xyz: its product with (point - corner) is the second vertex's weight; w: the greatest distance
+    vec4 third;            // xyz: the same for the third vertex
+};
+
 struct MarchCounters {
     uint waiting_primary;
     uint waiting_shadow;
     uint queries;
     uint paused;           // rays that used up the pass's turns and go on in the next
     uint stood_in;         // tiles that were missing and that no ray waited for
+    uint launched;         // rays that a proxy let run
 };
 
 #ifdef __cplusplus
@@ -151,8 +171,10 @@ static_assert(sizeof(BrickPair) == 12, "GLSL sees another layout");
 static_assert(sizeof(MarchView) == 160, "GLSL sees another layout");
 static_assert(sizeof(MarchWindow) == 80, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
-static_assert(sizeof(MarchCounters) == 20, "GLSL sees another layout");
+static_assert(sizeof(MarchCounters) == 24, "GLSL sees another layout");
 static_assert(sizeof(BlockStart) == 12, "GLSL sees another layout");
+static_assert(sizeof(MeshView) == 128, "GLSL sees another layout");
+static_assert(sizeof(MeshTriangle) == 64, "GLSL sees another layout");
 static_assert(sizeof(DeformItem) == 32, "GLSL sees another layout");
 static_assert(sizeof(DeformInfluences) == 24, "GLSL sees another layout");
 static_assert(sizeof(DeformTarget) == 16, "GLSL sees another layout");

@@ -5,11 +5,18 @@
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2
 // defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=0 WINDOWS=1
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=0 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES WITH_PROXY
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=2 WITH_PROXY
 #define RAYS_WIDEN 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #if SHOW_TREE
 #include "march/show_tree.glsl"
+#endif
+
+#ifdef WITH_PROXY
+#include "mesh/proxy_span.glsl"
 #endif
 
 layout(local_size_x = BLOCK_SIDE * BLOCK_SIDE) in;
@@ -23,8 +30,14 @@ uniform uint list_out;
 uniform uint shadow_list;
 
 RayState state;
+#ifdef WITH_MESHES
+MeshPixel mesh;
+#endif
 
 bool visit(inout Ray ray, Sample s) {
+#ifdef WITH_MESHES
+    if (s.t > mesh.t) return false;
+#endif
     const float left = behind(state.color.a, coverage_of(s));
     const float weight = state.color.a - left;
     vec3 color = view.surface_color.rgb;
@@ -54,9 +67,8 @@ bool visit(inout Ray ray, Sample s) {
 }
 
 // Is there light to be stopped on its way to this point?
-bool needs_shadow_ray(ivec2 pixel) {
+bool needs_shadow_ray(PixelRay seen) {
     if (view.size_shadow.z == 0 || state.color.a > 1.0 - 1.0 / 512.0) return false;
-    const PixelRay seen = pixel_ray(pixel);
     const vec3 point = seen.origin + seen.direction * state.normal_depth.w;
     return dot(facing_normal(state, seen.direction), direction_to_light(point)) > 0.0;
 }
@@ -82,6 +94,14 @@ void main() {
 #if WINDOWS
     ray.from_eye = true;
 #endif
+#ifdef WITH_MESHES
+    mesh = mesh_pixel(pixel);
+    ray.t_end = min(ray.t_end, mesh.t);
+#endif
+#ifdef WITH_PROXY
+    const vec2 span = proxy_span_at(pixel);
+    ray.t_end = min(ray.t_end, span.y);
+#endif
 
     bool inside = true;
     if (first_pass) {
@@ -89,7 +109,12 @@ void main() {
         state.normal_depth = vec4(0.0);
         state.voxel_t_weight = uvec4(0u);
         ray.t = max(start.near - seen.skipped, 0.0);
-        inside = enter_windows(ray);
+#ifdef WITH_PROXY
+        inside = span.x < span.y;
+        if (inside) atomicAdd(counters.launched, 1u);
+        ray.t = max(ray.t, span.x);
+#endif
+        inside = inside && enter_windows(ray);
 #if !WINDOWS
         stay_behind_planes(ray);
 #endif
@@ -109,7 +134,18 @@ void main() {
             state.color.rgb /= 1.0 - state.color.a;
             state.color.a = 0.0;
         }
-        if (needs_shadow_ray(pixel)) {
+#if WINDOWS
+        const PixelRay shown = pixel_ray(pixel);  // in the window of what it shows
+#else
+        const PixelRay shown = seen;
+#endif
+        bool waits = needs_shadow_ray(shown);
+#ifdef WITH_MESHES
+        // Until the pixel is written, its place keeps the light that reaches the voxels; negative: not known yet.
+        image_rgba8[index] = floatBitsToUint(waits ? -1.0 : 1.0);
+        waits = waits || mesh_needs_shadow_ray(mesh, seen, state.color.a);
+#endif
+        if (waits) {
             state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
 #if WINDOWS
             state.voxel_t_weight.z = uint(seen_window);
@@ -117,7 +153,11 @@ void main() {
             rays[index] = state;
             lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
         } else {
+#ifdef WITH_MESHES
+            write_pixel(pixel, state, 1.0, mesh, 1.0);
+#else
             write_pixel(pixel, state, 1.0);
+#endif
         }
     }
 }

@@ -5,6 +5,8 @@
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=2
 // defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=0 WINDOWS=1
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=0 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=2 WITH_MESHES
 #define RAYS_WIDEN 0
 #include "march/march.glsl"
 #include "march/shade.glsl"
@@ -39,7 +41,7 @@ bool visit(inout Ray ray, Sample s) {
     const vec3 from_receiver = s.centre - receiver;
 #endif
 #if PROGRESSIVE
-    if (stand_in) {  // its own voxels may be larger than they should be
+    if (stand_in && own_reach > 0.0) {  // its own voxels may be larger than they should be
         height = max(height, OWN_HEIGHT * s.side);
         reach = max(reach, own_reach_of(s.side));
     }
@@ -68,16 +70,33 @@ void main() {
 #endif
 
     const PixelRay seen = pixel_ray(pixel);
-    const float width = view.eye.w * (seen.skipped + state.normal_depth.w);
-    const float side = voxel_side(width);
-    receiver = seen.origin + seen.direction * state.normal_depth.w;
+    float depth = state.normal_depth.w;
     receiver_normal = facing_normal(state, seen.direction);
+#ifdef WITH_MESHES
+    // A pixel may have two receivers: first its voxels, then the mesh behind them.
+    const MeshPixel mesh = mesh_pixel(pixel);
+    const float light_on_voxels_before = uintBitsToFloat(image_rgba8[index]);
+    const bool at_mesh = light_on_voxels_before >= 0.0;
+    if (at_mesh) {
+        depth = mesh.t;
+        receiver_normal = mesh.plane;
+    }
+#endif
+    const float width = view.eye.w * (seen.skipped + depth);
+    const float side = voxel_side(width);
+    receiver = seen.origin + seen.direction * depth;
     const vec3 to_light = direction_to_light(receiver);
     // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
     // at a low angle stays among them for longer.
     receiver_rise = max(dot(receiver_normal, to_light), 1e-3);
     own_height = OWN_HEIGHT * side;
     own_reach = own_reach_of(side);
+#ifdef WITH_MESHES
+    if (at_mesh) {  // whose place is known exactly
+        own_height = mesh_own_height * side;
+        if (mesh_own_height == 0.0) own_reach = 0.0;
+    }
+#endif
 
     const vec4 light = light_there();
     const float reach = light.w > 0.5 ? distance(light.xyz, receiver) : 1e30;
@@ -89,7 +108,7 @@ void main() {
     if (starts) {
         visibility = 1.0;
         // Until here all voxels are its own: those that are not lie at least half a diagonal under their centres.
-        ray.t = min(0.88 * side / receiver_rise, own_reach);
+        ray.t = min(max(own_height - 0.87 * side, 0.0) / receiver_rise, own_reach);
         inside = enter_windows(ray);
     } else {
         load_position(ray, state);
@@ -103,5 +122,18 @@ void main() {
         lists[list_out + atomicAdd(counters.waiting_shadow, 1u)] = index;
         return;
     }
-    write_pixel(pixel, state, visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0);
+    const float light_found = visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
+#ifdef WITH_MESHES
+    if (!at_mesh && mesh_needs_shadow_ray(mesh, seen, state.color.a)) {
+        image_rgba8[index] = floatBitsToUint(light_found);
+        state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
+        rays[index] = state;
+        lists[list_out + atomicAdd(counters.waiting_shadow, 1u)] = index;
+        atomicAdd(counters.paused, 1u);
+        return;
+    }
+    write_pixel(pixel, state, at_mesh ? light_on_voxels_before : light_found, mesh, at_mesh ? light_found : 1.0);
+#else
+    write_pixel(pixel, state, light_found);
+#endif
 }
