@@ -9,9 +9,12 @@
 
 #include "base/error.h"
 #include "renderer/march/marcher.h"
+#include "renderer/march/transfer_table.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
+#include "renderer/produce/dense_field.h"
 #include "renderer/produce/surface_content.h"
+#include "renderer/produce/volume_content.h"
 #include "shaders/interop/config.h"
 #include "voxelizer/surface.h"
 
@@ -102,12 +105,12 @@ interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, int
 /// In the order of the data's way: oracle and producer, pools, marcher.
 struct Renderer::Parts {
     Parts(const TreeShape& tree_shape, std::unique_ptr<Content> shown, const TreeOptions& options,
-          const gl::ShaderSource& shaders)
+          const gl::ShaderSource& shaders, MarchKind kind = {})
         : shape(tree_shape),
           content(std::move(shown)),
-          pool(shape, content->has_color(), options.brick_pool_bytes),
+          pool(shape, content->channels(), options.brick_pool_bytes),
           tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{})),
-          marcher(shape, content->has_color(), shaders) {}
+          marcher(shape, content->has_color(), shaders, std::move(kind)) {}
 
     void converge(const std::function<void(double)>& progress, double pixels, double pixels_before);
     void serve(std::vector<std::uint32_t> queries);
@@ -130,6 +133,23 @@ Renderer::Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
     const TreeShape shape = make_tree_shape(options.n, options.m, options.max_resolution);
     auto content = std::make_unique<SurfaceContent>(shape, flatten(scene, snapshot, shape), shaders);
     parts_ = std::make_unique<Parts>(shape, std::move(content), options, shaders);
+}
+
+Renderer::Renderer(const scenes::Volume& volume, const TransferFunction& transfer, const TreeOptions& options,
+                   const VolumeOptions& volume_options, const gl::ShaderSource& shaders)
+    : Renderer(std::make_shared<DenseField>(volume, options.n), transfer, options, volume_options, shaders) {}
+
+Renderer::Renderer(std::shared_ptr<const Field> field, const TransferFunction& transfer,
+                   const TreeOptions& options, const VolumeOptions& volume_options,
+                   const gl::ShaderSource& shaders) {
+    const VolumeShape shape = make_volume_shape(field->frame(), options.n, options.m, options.max_resolution);
+    auto content = std::make_unique<VolumeContent>(shape, std::move(field), transfer.visible());
+    auto table = std::make_shared<TransferTable>(transfer, volume_options, content->grid().voxel_size);
+    MarchKind kind{"march/volume.comp.glsl",
+                   "march/volume_shadow.comp.glsl",
+                   {{"VOLUME_STEPS", std::to_string(volume_options.steps_per_voxel)}},
+                   [table] { table->bind(); }};
+    parts_ = std::make_unique<Parts>(shape.tree, std::move(content), options, shaders, std::move(kind));
 }
 
 Renderer::Renderer(Renderer&&) noexcept = default;

@@ -10,8 +10,11 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "renderer/march/transfer_function.h"
+#include "renderer/produce/volume_field.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
+#include "scenes/volume.h"
 
 namespace cairn::renderer {
 
@@ -104,9 +107,9 @@ struct FrameStatistics {
     std::size_t brick_pool_bytes = 0;
 };
 
-/// Renders a scene through its voxel cache. Only what rays prove visible is voxelized, no finer than a pixel
-/// shows. Bricks stay in the pools from one frame to the next. Needs the context that was current at its
-/// construction.
+/// Renders a scene, or a volume, through its voxel cache. Only what rays prove visible is voxelized, no finer
+/// than a pixel shows. Bricks stay in the pools from one frame to the next. Needs the context that was
+/// current at its construction.
 ///
 /// The picture depends on the view alone: not on the pools' sizes, nor on what earlier frames left in them.
 class Renderer {
@@ -116,6 +119,16 @@ public:
     /// not fit.
     Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options = {},
              const gl::ShaderSource& shaders = {});
+    /// A volume: its densities as the transfer function shows them, marched at the volume's own resolution,
+    /// or `options.max_resolution` if that is coarser. The volume is not needed afterwards.
+    /// @throws Error  as above; Fault::usage for VolumeOptions out of range.
+    Renderer(const scenes::Volume& volume, const TransferFunction& transfer, const TreeOptions& options = {},
+             const VolumeOptions& volume_options = {}, const gl::ShaderSource& shaders = {});
+    /// A field of densities, made for the tree's n.
+    Renderer(std::shared_ptr<const Field> field, const TransferFunction& transfer,
+             const TreeOptions& options = {}, const VolumeOptions& volume_options = {},
+             const gl::ShaderSource& shaders = {});
+
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
     Renderer(const Renderer&) = delete;

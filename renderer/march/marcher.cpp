@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "gl/limits.h"
@@ -20,11 +21,13 @@ constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY 
 
 }  // namespace
 
-Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders)
+Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders, MarchKind kind)
     : shaders_(shaders),
+      kind_(std::move(kind)),
       defines_(shape.defines(has_color)),
       view_(sizeof(interop::MarchView), "view"),
       queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
+    defines_.insert(defines_.end(), kind_.defines.begin(), kind_.defines.end());
     (void)primary_program(PassKind::patient);
     (void)shadow_program(PassKind::patient);
 }
@@ -37,7 +40,7 @@ const gl::Program& Marcher::primary_program(PassKind kind) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
         defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
-        program = gl::build_compute(shaders_, "march/primary.comp.glsl", defines);
+        program = gl::build_compute(shaders_, kind_.primary, defines);
     }
     return program;
 }
@@ -48,7 +51,7 @@ const gl::Program& Marcher::shadow_program(PassKind kind) {
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
-        program = gl::build_compute(shaders_, "march/shadow.comp.glsl", defines);
+        program = gl::build_compute(shaders_, kind_.shadow, defines);
     }
     return program;
 }
@@ -100,6 +103,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     image_.bind_storage(SSBO_IMAGE);
     tree.bind_for_reading();
     pool.bind_for_reading();
+    if (kind_.bind) kind_.bind();
 
     const std::uint32_t old_shadow = waiting_shadow_;
     const glm::ivec2 blocks = (size_ + 7) / 8;

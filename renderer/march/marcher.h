@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -36,11 +38,19 @@ struct PassResult {
     [[nodiscard]] bool done() const { return waiting_primary == 0 && waiting_shadow == 0; }
 };
 
+/// How rays see a kind of content: the entry points, and what they need beside the pools.
+struct MarchKind {
+    std::string primary = "march/primary.comp.glsl";
+    std::string shadow = "march/shadow.comp.glsl";
+    gl::Defines defines;
+    std::function<void()> bind;  ///< before each pass; may be empty
+};
+
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
 /// query buffer (Crassin et al. 2008, sections 5.1 to 5.3).
 class Marcher {
 public:
-    Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders);
+    Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders, MarchKind kind = {});
 
     /// Rows of a picture that are marched at once: as many as the driver's largest buffer holds ray states
     /// for.
@@ -74,6 +84,7 @@ private:
     [[nodiscard]] interop::MarchCounters read_counters() const;
 
     gl::ShaderSource shaders_;
+    MarchKind kind_;
     gl::Defines defines_;
     std::array<gl::Program, 4> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE
     std::array<gl::Program, 2> shadow_;   ///< PROGRESSIVE

@@ -53,5 +53,8 @@
 #define TEXTURE_BRICK_MASKS 1
 #define TEXTURE_BRICK_COLOR 2   // or coverage alone
 #define TEXTURE_BRICK_NORMAL 3
+// Of volumes (shaders/march/volume.glsl).
+#define UBO_VOLUME 1
+#define TEXTURE_TRANSFER 10  // DENSITY_STEPS^2 texels: column s0, row s1; rgb: mean emission, a: mean extinction
 
 #endif
