@@ -12,7 +12,7 @@
 #include "app/png.h"
 #include "app/progress.h"
 #include "app/report.h"
-#include "app/scene_input.h"
+#include "app/subject.h"
 #include "app/verbs.h"
 #include "app/view_options.h"
 #include "renderer/mesh/mesh_raster.h"
@@ -96,17 +96,16 @@ ExitCode run(const Options& options) {
     Report report(options.common.report);
     report.add("scene", options.common.scene.scene);
     Stopwatch watch;
-    auto input = std::make_unique<SceneInput>(load_input(options.common.scene, quiet));
+    auto subject = std::make_unique<Subject>(options.common.scene, options.view, quiet);
     report.add("load_ms", watch.lap_ms());
-    report.add("triangles", input->snapshot.triangle_count);
-    const renderer::View view = view_of(options.view, input->snapshot);
+    subject->add_figures(report);
+    const renderer::View view = subject->view(options.view);
 
     const Driver driver(options.common.driver);
     report.add("context_ms", watch.lap_ms());
-    renderer::Renderer renderer(input->scene, input->snapshot, options.view.tree,
-                                options.common.driver.shaders);
+    renderer::Renderer renderer = subject->make_renderer(options.view, options.common.driver.shaders);
     renderer.set_mix(load_mix(options, report));
-    input.reset();  // the renderer has its own copy of what it needs: do not pay twice
+    subject.reset();  // the renderer has its own copy of what it needs: do not pay twice
     report.add("setup_ms", watch.lap_ms());
 
     renderer::Image image;

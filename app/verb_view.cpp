@@ -18,7 +18,7 @@
 #include "app/png.h"
 #include "app/progress.h"
 #include "app/report.h"
-#include "app/scene_input.h"
+#include "app/subject.h"
 #include "app/verbs.h"
 #include "app/view_options.h"
 #include "app/viewer/canvas.h"
@@ -203,9 +203,9 @@ ExitCode run(const Options& options) {
     const bool quiet = options.report.quiet;
     Report report(options.report);
     report.add("scene", options.scene.scene);
-    auto input = std::make_unique<SceneInput>(load_input(options.scene, quiet));
-    const renderer::View view = view_of(options.view, input->snapshot);
-    const double size = scene_size(input->snapshot.bounds);
+    auto subject = std::make_unique<Subject>(options.scene, options.view, quiet);
+    const renderer::View view = subject->view(options.view);
+    const double size = scene_size(subject->bounds());
 
     const std::unique_ptr<gl::Window> window = gl::create_window(
         "cairn view " + options.scene.scene + " (F1: help)", {view.width, view.height}, wants_debugging());
@@ -219,8 +219,8 @@ ExitCode run(const Options& options) {
     std::optional<Viewer> viewer;
     {
         const Progress progress("preparing", quiet);
-        renderer.emplace(input->scene, input->snapshot, options.view.tree, options.driver.shaders);
-        input.reset();  // the renderer has its own copy of what it needs
+        renderer.emplace(subject->make_renderer(options.view, options.driver.shaders));
+        subject.reset();  // the renderer has its own copy of what it needs
         viewer.emplace(*renderer, view, size);
         viewer->warm_up();
     }

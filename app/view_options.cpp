@@ -165,6 +165,16 @@ void add_view_options(CLI::App& verb, ViewOptions& options) {
         "the size of a voxel on the screen, in pixels, that rays\nlook for (default: 1)",
         [&options](const std::string& text) { options.view.pixel_error = pixel_error_of(text); });
     add_parsed_option(
+        verb, "--transfer", "NAME|POINTS",
+        fmt::format(
+            "what the densities of a volume look like: {};\nor points DENSITY:R,G,B:EXTINCTION with \";\" "
+            "between them,\nall in [0, 1] but the extinction, which is for each voxel\n(default: {})",
+            transfer_names(), default_transfer),
+        [&options](const std::string& text) { options.transfer = parse_transfer(text); });
+    add_parsed_option(
+        verb, "--copies", "K", "a volume K times along each axis, side by side (default: 1)",
+        [&options](const std::string& text) { options.copies = parse_int("--copies", text, 1, max_copies); });
+    add_parsed_option(
         verb, "--show", "surface|levels|bricks",
         "the scene, or what its voxels are: their level in the\ntree, or the lines between bricks "
         "(default: surface)",
@@ -212,6 +222,8 @@ std::string render_command(const SceneOptions& scene, const ViewOptions& options
     if (options.tree.max_resolution != renderer::TreeOptions{}.max_resolution)
         add("--max-resolution", std::to_string(options.tree.max_resolution));
     if (options.brick_pool) add("--brick-pool", *options.brick_pool);
+    if (options.transfer) add("--transfer", options.transfer->text);
+    if (options.copies != 1) add("--copies", std::to_string(options.copies));
     add("--output", output.string());
     return line;
 }

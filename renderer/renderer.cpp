@@ -10,11 +10,14 @@
 
 #include "base/error.h"
 #include "renderer/march/marcher.h"
+#include "renderer/march/transfer_table.h"
 #include "renderer/march/windows.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
+#include "renderer/produce/dense_field.h"
 #include "renderer/produce/surface_content.h"
+#include "renderer/produce/volume_content.h"
 #include "shaders/interop/config.h"
 #include "voxelizer/surface.h"
 
@@ -170,12 +173,13 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
 /// In the order of the data's way: oracle and producer, pools, marcher.
 struct Renderer::Parts {
     Parts(const TreeShape& tree_shape, std::unique_ptr<Content> shown, const TreeOptions& options,
-          const gl::ShaderSource& shaders)
+          const gl::ShaderSource& shaders, MarchKind kind = {})
         : shape(tree_shape),
           content(std::move(shown)),
-          pool(shape, content->has_color(), options.brick_pool_bytes),
+          pool(shape, content->channels(), options.brick_pool_bytes),
           tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{})),
-          marcher(shape, content->has_color(), {options.traversal, options.block_starts}, shaders) {}
+          marcher(shape, content->has_color(), {options.traversal, options.block_starts}, shaders,
+                  std::move(kind)) {}
 
     [[nodiscard]] interop::MarchView march_view_of(const View& view);
     void find_tiles_asked_for(const std::vector<std::uint32_t>& entries);
@@ -218,6 +222,23 @@ Renderer::Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
 TreeShape tree_shape_of(const TreeOptions& options) {
     return options.max_level ? make_deep_tree_shape(options.n, options.m, *options.max_level)
                              : make_tree_shape(options.n, options.m, options.max_resolution);
+}
+
+Renderer::Renderer(const scenes::Volume& volume, const TransferFunction& transfer, const TreeOptions& options,
+                   const VolumeOptions& volume_options, const gl::ShaderSource& shaders)
+    : Renderer(std::make_shared<DenseField>(volume, options.n), transfer, options, volume_options, shaders) {}
+
+Renderer::Renderer(std::shared_ptr<const Field> field, const TransferFunction& transfer,
+                   const TreeOptions& options, const VolumeOptions& volume_options,
+                   const gl::ShaderSource& shaders) {
+    const VolumeShape shape = make_volume_shape(field->frame(), options.n, options.m, options.max_resolution);
+    auto content = std::make_unique<VolumeContent>(shape, std::move(field), transfer.visible());
+    auto table = std::make_shared<TransferTable>(transfer, volume_options, content->grid().voxel_size);
+    MarchKind kind{"march/volume.comp.glsl",
+                   "march/volume_shadow.comp.glsl",
+                   {{"VOLUME_STEPS", std::to_string(volume_options.steps_per_voxel)}},
+                   [table] { table->bind(); }};
+    parts_ = std::make_unique<Parts>(shape.tree, std::move(content), options, shaders, std::move(kind));
 }
 
 Renderer::Renderer(Renderer&&) noexcept = default;

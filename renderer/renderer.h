@@ -10,11 +10,14 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "renderer/march/transfer_function.h"
 #include "renderer/march/traversal.h"
 #include "renderer/pool/tree_shape.h"
 #include "renderer/produce/content.h"
+#include "renderer/produce/volume_field.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
+#include "scenes/volume.h"
 
 namespace cairn::renderer {
 
@@ -140,9 +143,9 @@ struct Mix {
     std::shared_ptr<MeshRaster> proxy;
 };
 
-/// Renders a scene through its voxel cache. Only what rays prove visible is voxelized, no finer than a pixel
-/// shows. Bricks stay in the pools from one frame to the next. Needs the context that was current at its
-/// construction.
+/// Renders a scene, or a volume, through its voxel cache. Only what rays prove visible is voxelized, no finer
+/// than a pixel shows. Bricks stay in the pools from one frame to the next. Needs the context that was
+/// current at its construction.
 ///
 /// The picture depends on the view (and the mix) alone: not on the pools' sizes, nor on what earlier frames
 /// left in them.
@@ -153,6 +156,16 @@ public:
     /// not fit.
     Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options = {},
              const gl::ShaderSource& shaders = {});
+    /// A volume: its densities as the transfer function shows them, marched at the volume's own resolution,
+    /// or `options.max_resolution` if that is coarser. The volume is not needed afterwards.
+    /// @throws Error  as above; Fault::usage for VolumeOptions out of range.
+    Renderer(const scenes::Volume& volume, const TransferFunction& transfer, const TreeOptions& options = {},
+             const VolumeOptions& volume_options = {}, const gl::ShaderSource& shaders = {});
+    /// A field of densities, made for the tree's n.
+    Renderer(std::shared_ptr<const Field> field, const TransferFunction& transfer,
+             const TreeOptions& options = {}, const VolumeOptions& volume_options = {},
+             const gl::ShaderSource& shaders = {});
+
     /// Content made for tree_shape_of(options), which must be the options here.
     Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
              const gl::ShaderSource& shaders = {});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "gl/limits.h"
@@ -40,12 +41,14 @@ MarchOptions options_for(const TreeShape& shape, const MarchOptions& options) {
 }  // namespace
 
 Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
-                 const gl::ShaderSource& shaders)
+                 const gl::ShaderSource& shaders, MarchKind kind)
     : options_(options_for(shape, options)),
       shaders_(shaders),
+      kind_(std::move(kind)),
       defines_(defines_of(shape, has_color, options_)),
       view_(sizeof(interop::MarchView), "view"),
       queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
+    defines_.insert(defines_.end(), kind_.defines.begin(), kind_.defines.end());
     if (shape.has_windows())
         windows_ = gl::Buffer(window_header_bytes + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows");
     (void)primary_program(PassKind::patient);
@@ -64,7 +67,7 @@ const gl::Program& Marcher::primary_program(PassKind kind) {
         defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
         if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
         if (proxy != 0) defines.emplace_back("WITH_PROXY", "");
-        program = gl::build_compute(shaders_, "march/primary.comp.glsl", defines);
+        program = gl::build_compute(shaders_, kind_.primary, defines);
     }
     return program;
 }
@@ -77,7 +80,7 @@ const gl::Program& Marcher::shadow_program(PassKind kind) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
         if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
-        program = gl::build_compute(shaders_, "march/shadow.comp.glsl", defines);
+        program = gl::build_compute(shaders_, kind_.shadow, defines);
     }
     return program;
 }
@@ -168,6 +171,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     tree.bind_for_reading();
     pool.bind_for_reading();
     bind_mix();
+    if (kind_.bind) kind_.bind();
 
     const std::uint32_t old_shadow = waiting_shadow_;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.

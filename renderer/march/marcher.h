@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -57,12 +59,20 @@ struct MarchMix {
     int proxy_first_row = 0;
 };
 
+/// How rays see a kind of content: the entry points, and what they need beside the pools.
+struct MarchKind {
+    std::string primary = "march/primary.comp.glsl";
+    std::string shadow = "march/shadow.comp.glsl";
+    gl::Defines defines;
+    std::function<void()> bind;  ///< before each pass; may be empty
+};
+
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
 /// query buffer (Crassin et al. 2008, sections 5.1 to 5.3).
 class Marcher {
 public:
     Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
-            const gl::ShaderSource& shaders);
+            const gl::ShaderSource& shaders, MarchKind kind = {});
 
     /// Rows of a picture that are marched at once: as many as the driver's largest buffer holds ray states
     /// for.
@@ -101,6 +111,7 @@ private:
 
     MarchOptions options_;
     gl::ShaderSource shaders_;
+    MarchKind kind_;
     gl::Defines defines_;
     void bind_mix() const;
     void set_mix(const gl::Program& program) const;

@@ -2,6 +2,7 @@
 
 #include <glm/glm.hpp>
 
+#include "renderer/pool/brick_pool.h"
 #include "renderer/produce/oracle.h"
 #include "renderer/produce/producer.h"
 #include "voxelizer/grid.h"
@@ -24,6 +25,7 @@ public:
     [[nodiscard]] virtual const voxelizer::Grid& grid() const = 0;
     /// Do bricks hold colours? Else everything has uniform_color(), linear.
     [[nodiscard]] virtual bool has_color() const = 0;
+    [[nodiscard]] virtual Channels channels() const { return {.color = has_color()}; }
     [[nodiscard]] virtual glm::vec3 uniform_color() const = 0;
 };
 

@@ -64,4 +64,8 @@
 #define UBO_MESH_VIEW 1
 #define SSBO_MESH_TRIANGLES 5  // MeshTriangle: a batch of triangles, as this view sees them
 
+// Of volumes (shaders/march/volume.glsl).
+#define UBO_VOLUME 3
+#define TEXTURE_TRANSFER 12  // DENSITY_STEPS^2 texels: column s0, row s1; rgb: mean emission, a: mean extinction
+
 #endif

@@ -134,6 +134,10 @@
 // bends.
 #define MESH_OWN_HEIGHT 1.125
 #define MESH_NEAREST_PART 9.5367431640625e-7
+// Densities that a brick tells apart; a transfer function is linear between them.
+#define DENSITY_STEPS 256
+// A voxel's chord is cut in at most so many steps.
+#define VOLUME_MOST_STEPS 32
 
 // A ray stops when less light than this is left: half a step of an 8-bit image.
 #define OPAQUE_TRANSMITTANCE (1.0 / 512.0)

@@ -122,6 +122,14 @@ struct MarchWindow {
     uvec4 tiles[2];        // entry of tile x + 2 (y + 2 z), or WINDOW_*
 };
 
+// What rays through a volume need to know. Lengths in voxels of the finest level.
+struct VolumeView {
+    float voxel_size;     // world units
+    float full_gradient;  // densities a voxel: a gradient so steep is lit as a surface, one of 0 as fog; 0: all is fog
+    float shadow_start;   // a shadow ray starts so many voxels of the level that is seen from the point
+    float padding;
+};
+
 // A ray between two passes. Primary: what it has gathered. Shadow: depth and color stay, `weight` becomes visibility.
 struct RayState {
     vec4 color;            // rgb: gathered, premultiplied; a: transmittance
@@ -170,6 +178,7 @@ static_assert(sizeof(FractalTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(BrickPair) == 12, "GLSL sees another layout");
 static_assert(sizeof(MarchView) == 160, "GLSL sees another layout");
 static_assert(sizeof(MarchWindow) == 80, "GLSL sees another layout");
+static_assert(sizeof(VolumeView) == 16, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
 static_assert(sizeof(MarchCounters) == 24, "GLSL sees another layout");
 static_assert(sizeof(BlockStart) == 12, "GLSL sees another layout");

@@ -33,6 +33,11 @@ struct Sample {
     float side;           // of the voxel
 };
 
+// Loop turns that visit() takes at most; a pass counts them (TURN_BUDGET).
+#ifndef VISIT_TURNS
+#define VISIT_TURNS 0
+#endif
+
 // Takes one occupied voxel; false stops the ray.
 bool visit(inout Ray ray, Sample s);
 
@@ -83,7 +88,7 @@ int march(inout Ray ray) {
     int turns = 0;
     forget_trail();
     for (;;) {
-        ++turns;
+        turns += 1 + VISIT_TURNS;
         const int found = seek(ray, place, turns);
         if (found != SEEK_OCCUPIED) return found == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
         const int voxel_shift = voxel_shift_of(place);

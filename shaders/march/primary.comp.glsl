@@ -15,25 +15,14 @@
 #include "march/show_tree.glsl"
 #endif
 
-#ifdef WITH_PROXY
-#include "mesh/proxy_span.glsl"
-#endif
+#include "march/launch.glsl"
 
 layout(local_size_x = BLOCK_SIDE * BLOCK_SIDE) in;
 
-layout(std430, binding = SSBO_BLOCK_STARTS) readonly buffer BlockStartBlock { BlockStart block_starts[]; };
-
-uniform uint ray_count;
-uniform bool first_pass;     // all pixels of the blocks that see anything; else those of the list
-uniform uint list_in;        // words in lists[]
 uniform uint list_out;
 uniform uint shadow_list;
 
 RayState state;
-#ifdef WITH_MESHES
-MeshPixel mesh;
-#endif
-
 bool visit(inout Ray ray, Sample s) {
 #ifdef WITH_MESHES
     if (s.t > mesh.t) return false;
@@ -74,50 +63,19 @@ bool needs_shadow_ray(PixelRay seen) {
 }
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= ray_count) return;
-    ivec2 pixel;
-    BlockStart start = BlockStart(0u, 0.0, 1e30);
-    if (first_pass) {
-        const int blocks = (view.size_shadow.x + BLOCK_SIDE - 1) / BLOCK_SIDE;
-        start = block_starts[i / uint(BLOCK_SIDE * BLOCK_SIDE)];
-        const int block = int(start.block);
-        pixel = ivec2(block % blocks, block / blocks) * BLOCK_SIDE + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
-        if (pixel.x >= view.size_shadow.x || pixel.y >= view.band.y) return;
-    } else {
-        const int p = int(lists[list_in + i]);
-        pixel = ivec2(p % view.size_shadow.x, p / view.size_shadow.x);
-    }
-    const uint index = uint(pixel.y * view.size_shadow.x + pixel.x);
+    Launch launch;
+    if (!find_pixel(launch)) return;
+    const ivec2 pixel = launch.pixel;
+    const uint index = launch.index;
     const PixelRay seen = pixel_ray(pixel);
-    Ray ray = make_ray(seen.origin, seen.direction, start.far - seen.skipped, view.eye.w * seen.skipped, view.eye.w);
-#if WINDOWS
-    ray.from_eye = true;
-#endif
-#ifdef WITH_MESHES
-    mesh = mesh_pixel(pixel);
-    ray.t_end = min(ray.t_end, mesh.t);
-#endif
-#ifdef WITH_PROXY
-    const vec2 span = proxy_span_at(pixel);
-    ray.t_end = min(ray.t_end, span.y);
-#endif
+    Ray ray = launched_ray(launch, seen);
 
     bool inside = true;
     if (first_pass) {
         state.color = vec4(0.0, 0.0, 0.0, 1.0);
         state.normal_depth = vec4(0.0);
         state.voxel_t_weight = uvec4(0u);
-        ray.t = max(start.near - seen.skipped, 0.0);
-#ifdef WITH_PROXY
-        inside = span.x < span.y;
-        if (inside) atomicAdd(counters.launched, 1u);
-        ray.t = max(ray.t, span.x);
-#endif
-        inside = inside && enter_windows(ray);
-#if !WINDOWS
-        stay_behind_planes(ray);
-#endif
+        inside = enter(ray, launch, seen);
     } else {
         state = rays[index];
         load_position(ray, state);

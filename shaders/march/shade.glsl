@@ -71,15 +71,16 @@ bool mesh_needs_shadow_ray(MeshPixel mesh, PixelRay seen, float transmittance) {
     return dot(turned_to_viewer(mesh.normal, seen.direction), direction_to_light(mesh_point(mesh, seen))) > 0.0;
 }
 
-// The mesh stands where the background would be seen, whose alpha is 0.
+// What stands behind the voxels: the mesh, or the background, whose alpha is 0.
+vec4 lit_mesh(MeshPixel mesh, PixelRay seen, float mesh_visibility) {
+    if (!is_there(mesh)) return vec4(view.background.rgb, 0.0);
+    const vec3 normal = turned_to_viewer(mesh.normal, seen.direction);
+    return vec4(mesh.color * light_on(mesh_point(mesh, seen), normal, mesh_visibility), 1.0);
+}
+
 void write_pixel(ivec2 pixel, RayState state, float visibility, MeshPixel mesh, float mesh_visibility) {
     const PixelRay seen = pixel_ray(pixel);
-    vec4 behind_voxels = vec4(view.background.rgb, 0.0);
-    if (is_there(mesh)) {
-        const vec3 normal = turned_to_viewer(mesh.normal, seen.direction);
-        behind_voxels = vec4(mesh.color * light_on(mesh_point(mesh, seen), normal, mesh_visibility), 1.0);
-    }
-    vec4 color = state.color.a * behind_voxels;
+    vec4 color = state.color.a * lit_mesh(mesh, seen, mesh_visibility);
     const float alpha = 1.0 - state.color.a;
     if (alpha > 0.0) color += vec4(state.color.rgb * light_on_voxels(state, seen, visibility), alpha);
     store_pixel(pixel, color.rgb, color.a);
