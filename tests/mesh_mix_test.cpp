@@ -8,6 +8,7 @@
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
 #include "scenes/builtin.h"
+#include "shaders/interop/config.h"
 #include "tests/gl_fixture.h"
 #include "tests/mesh_rays.h"
 #include "tests/test_scenes.h"
@@ -482,6 +483,26 @@ TEST_F(MeshMix, RowsRenderedApartAreThoseOfTheWholePicture) {
         const auto first = whole.rgba.begin() + std::ptrdiff_t(rows.first) * whole.width * 4;
         EXPECT_TRUE(std::equal(part.rgba.begin(), part.rgba.end(), first)) << "rows from " << rows.first;
     }
+}
+
+TEST_F(MeshMix, RowsFromTwoStripsOfAMeshAreThoseOfEachAlone) {
+    Everything all;
+    all.view.width = 4096;
+    all.view.height = 2048;
+    const int border = MESH_STRIP_PIXELS / all.view.width;
+    ASSERT_LT(border, all.view.height);
+    Renderer renderer = all.renderer();
+    const Image both = renderer.render_rows(all.view, {border - 2, 4});
+    ASSERT_EQ(both.height, 4);
+    int shown = 0;
+    for (int row = 0; row < 4; ++row) {
+        const Image one = renderer.render_rows(all.view, {border - 2 + row, 1});
+        const auto first = both.rgba.begin() + std::ptrdiff_t(row) * both.width * 4;
+        EXPECT_TRUE(std::equal(one.rgba.begin(), one.rgba.end(), first)) << "row " << border - 2 + row;
+        for (std::size_t i = 0; i < one.rgba.size(); i += 4)
+            shown += one.rgba[i] > 2 * one.rgba[i + 1] ? 1 : 0;
+    }
+    EXPECT_GT(shown, 1000) << "hardly any mesh was seen";
 }
 
 TEST_F(MeshMix, FramesWithinABudgetComeToTheSamePicture) {
