@@ -491,14 +491,15 @@ TEST_F(MeshMix, RowsFromTwoStripsOfAMeshAreThoseOfEachAlone) {
     all.view.height = 2048;
     const int border = MESH_STRIP_PIXELS / all.view.width;
     ASSERT_LT(border, all.view.height);
+    all.mix.proxy = nullptr;
     Renderer renderer = all.renderer();
-    const Image both = renderer.render_rows(all.view, {border - 2, 4});
-    ASSERT_EQ(both.height, 4);
+    const Image both = renderer.render_rows(all.view, {border - 1, 2});
+    ASSERT_EQ(both.height, 2);
     int shown = 0;
-    for (int row = 0; row < 4; ++row) {
-        const Image one = renderer.render_rows(all.view, {border - 2 + row, 1});
+    for (const int row : {1, 0}) {
+        const Image one = renderer.render_rows(all.view, {border - 1 + row, 1});
         const auto first = both.rgba.begin() + std::ptrdiff_t(row) * both.width * 4;
-        EXPECT_TRUE(std::equal(one.rgba.begin(), one.rgba.end(), first)) << "row " << border - 2 + row;
+        EXPECT_TRUE(std::equal(one.rgba.begin(), one.rgba.end(), first)) << "row " << border - 1 + row;
         for (std::size_t i = 0; i < one.rgba.size(); i += 4)
             shown += one.rgba[i] > 2 * one.rgba[i + 1] ? 1 : 0;
     }
