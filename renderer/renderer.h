@@ -131,7 +131,7 @@ class MeshRaster;
 struct Mix {
     /// Shown where it is nearer than the voxels, and through what they leave uncovered; lit like them. A
     /// voxel counts as nearer when the middle of the ray's way through it is. Meshes cast no shadows.
-    std::shared_ptr<MeshRaster> meshes;
+    std::shared_ptr<MeshRaster> meshes = nullptr;
     bool mesh_shadows = false;  ///< voxels cast shadows on the meshes, when the view has shadows
     /// The meshes are (also) the voxelized scene: then voxels that touch the triangle at a pixel are its own,
     /// and cast no shadow on it. Else contact shadows begin at the triangle.
@@ -140,7 +140,7 @@ struct Mix {
     /// to the eye than their front (which is so inside a closed mesh). Pixels that it does not cover launch
     /// no ray. A voxel shows when the ray's way through it reaches into the proxy. Shadow rays do not know
     /// it: what it hides still casts shadows (Crassin et al. 2008, section 5.4).
-    std::shared_ptr<MeshRaster> proxy;
+    std::shared_ptr<MeshRaster> proxy = nullptr;
 };
 
 /// Renders a scene, or a volume, through its voxel cache. Only what rays prove visible is voxelized, no finer

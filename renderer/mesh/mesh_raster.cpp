@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "gl/buffer.h"
 #include "gl/draw_state.h"
@@ -101,6 +102,7 @@ struct MeshRaster::Parts {
     }
 
     void begin(const Strip& strip, const MeshTargets& targets);
+    void place(std::size_t chunk, unsigned first, unsigned count);
     void draw_all(const gl::Program& drawing);
     void draw_nearest(const Strip& strip);
     void draw_look(const Strip& strip);
@@ -110,8 +112,10 @@ struct MeshRaster::Parts {
     voxelizer::Grid lattice;
     std::uint64_t triangle_count;
     voxelizer::GpuSurface surface;
-    std::vector<gl::Buffer> indices;  ///< of each chunk
-    gl::Buffer placed;                ///< MeshTriangle
+    std::vector<gl::Buffer> indices;                            ///< of each chunk
+    gl::Buffer placed;                                          ///< MeshTriangle
+    std::optional<Strip> placed_strip;                          ///< whose rays `placed` is for
+    std::optional<std::pair<std::size_t, unsigned>> placed_of;  ///< chunk and first triangle
     gl::Buffer view_buffer;
     gl::Buffer mesh_view_buffer;
     gl::VertexArrayHandle vertex_array;
@@ -124,6 +128,8 @@ struct MeshRaster::Parts {
 /// Sets the view and where fragments go. The viewport is the whole picture's, of which the targets hold a
 /// part.
 void MeshRaster::Parts::begin(const Strip& strip, const MeshTargets& targets) {
+    if (placed_strip != strip) placed_of.reset();
+    placed_strip = strip;
     interop::MarchView view{};
     view.eye = strip.eye;
     view.forward = strip.forward;
@@ -141,6 +147,18 @@ void MeshRaster::Parts::begin(const Strip& strip, const MeshTargets& targets) {
     glFrontFace(GL_CW);  // rows go downwards
 }
 
+/// Fills `placed` from the bound chunk. Most meshes are one batch: their second pass finds it as the first
+/// left it.
+void MeshRaster::Parts::place(std::size_t chunk, unsigned first, unsigned count) {
+    if (placed_of == std::pair(chunk, first)) return;
+    place_triangles.set("first", first);
+    place_triangles.set("count", count);
+    place_triangles.use();
+    gl::dispatch_threads(count, group_size);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    placed_of = std::pair(chunk, first);
+}
+
 void MeshRaster::Parts::draw_all(const gl::Program& drawing) {
     glBindVertexArray(vertex_array.id());
     placed.bind_storage(SSBO_MESH_TRIANGLES);
@@ -151,11 +169,7 @@ void MeshRaster::Parts::draw_all(const gl::Program& drawing) {
         glVertexArrayElementBuffer(vertex_array.id(), indices[chunk].id());
         for (unsigned first = 0; first < mesh.triangle_count; first += MESH_BATCH_TRIANGLES) {
             const unsigned count = std::min(mesh.triangle_count - first, unsigned(MESH_BATCH_TRIANGLES));
-            place_triangles.set("first", first);
-            place_triangles.set("count", count);
-            place_triangles.use();
-            gl::dispatch_threads(count, group_size);
-            glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+            place(chunk, first, count);
             drawing.set("first", first);
             drawing.use();
             glDrawElements(GL_TRIANGLES, GLsizei(3 * count), GL_UNSIGNED_INT,
