@@ -18,6 +18,8 @@ struct Box {
 
 /// Pixels around a box that count as covered, for the rounding of directions.
 constexpr double pixel_margin = 0.25;
+/// Nearer to the eye's plane, in voxels, nothing is projected.
+constexpr double least_depth = 1e-3;
 /// The same for positions, as a share of the largest coordinate: a few steps of a float.
 constexpr double place_margin = 0x1p-21;
 
@@ -81,28 +83,24 @@ private:
 
     [[nodiscard]] Rectangle project(const Box& box) const {
         const glm::ivec2 last(view_.size_shadow.x - 1, view_.band.y - 1);
-        glm::dvec2 low(std::numeric_limits<double>::infinity());
-        glm::dvec2 high(-std::numeric_limits<double>::infinity());
-        int behind = 0;
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::bvec3 side((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
-            const dvec3 point = glm::mix(box.low - slack_, box.high + slack_, side) - eye_;
-            const double depth = glm::dot(point, forward_);
-            if (depth < 1e-3) {
-                ++behind;
-                continue;
-            }
-            const glm::dvec2 place(glm::dot(point, across_) / depth, glm::dot(point, down_) / depth);
-            const glm::dvec2 pixel = (place + 1.0) * half_size_ - 0.5 - glm::dvec2(0.0, double(view_.band.x));
-            low = glm::min(low, pixel);
-            high = glm::max(high, pixel);
-        }
-        if (behind == 8) return {glm::ivec2(0), glm::ivec2(-1)};
+        const dvec3 middle = 0.5 * (box.low + box.high) - eye_;
+        const dvec3 half = 0.5 * (box.high - box.low) + slack_;
+        const double depth = glm::dot(middle, forward_);
+        const double half_depth = glm::dot(half, glm::abs(forward_));
+        if (depth + half_depth < least_depth) return {glm::ivec2(0), glm::ivec2(-1)};
         // A box that the eye's plane cuts may be anywhere.
-        if (behind != 0) return {glm::ivec2(0), last};
-        low = glm::clamp(glm::ceil(low - pixel_margin), glm::dvec2(0.0), glm::dvec2(last + 1));
-        high = glm::clamp(glm::floor(high + pixel_margin), glm::dvec2(-1.0), glm::dvec2(last));
-        return {glm::ivec2(low), glm::ivec2(high)};
+        if (depth - half_depth < least_depth) return {glm::ivec2(0), last};
+        const glm::dvec2 place(glm::dot(middle, across_), glm::dot(middle, down_));
+        const glm::dvec2 reach(glm::dot(half, glm::abs(across_)), glm::dot(half, glm::abs(down_)));
+        const double nearest = 1.0 / (depth - half_depth);
+        const double farthest = 1.0 / (depth + half_depth);
+        const glm::dvec2 low = glm::min((place - reach) * nearest, (place - reach) * farthest);
+        const glm::dvec2 high = glm::max((place + reach) * nearest, (place + reach) * farthest);
+        const glm::dvec2 first_pixel(-0.5, -0.5 - double(view_.band.x));
+        const glm::dvec2 low_pixel = glm::ceil((low + 1.0) * half_size_ + first_pixel - pixel_margin);
+        const glm::dvec2 high_pixel = glm::floor((high + 1.0) * half_size_ + first_pixel + pixel_margin);
+        return {glm::ivec2(glm::clamp(low_pixel, glm::dvec2(0.0), glm::dvec2(last + 1))),
+                glm::ivec2(glm::clamp(high_pixel, glm::dvec2(-1.0), glm::dvec2(last)))};
     }
 
     const interop::MarchView& view_;
@@ -137,13 +135,15 @@ public:
         const double voxel_side = (box.high.x - box.low.x) / shape_.m;
         const bool may_go_down =
             tile.level < shape_.max_level && voxel_side > 0.999 * grid_.cone_width(grid_.distance_to(box));
-        if (!may_go_down) {
+        // A tile without children or brick is asked for, or stood in for, as a whole.
+        const bool knows_children = (node.child_mask.x | node.child_mask.y) != 0;
+        if (!may_go_down && (node.brick == 0 || !knows_children)) {
             grid_.add(box);
             return;
         }
         for (int child = 0; child < shape_.child_count(); ++child) {
             if ((node.child_mask[child / 32] >> (child % 32) & 1U) == 0) continue;
-            if (node.children == 0)
+            if (!may_go_down || node.children == 0)
                 grid_.add(box_of(child_of(tile, shape_.n, child), root_side_, shape_.n));
             else
                 visit(node.children + std::uint32_t(child));
