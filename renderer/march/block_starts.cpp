@@ -4,17 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/march/front_cells.h"
 #include "shaders/interop/config.h"
 
 namespace cairn::renderer {
 namespace {
 
 using glm::dvec3;
-
-/// A part of the root cube, in voxels of the finest level.
-struct Box {
-    dvec3 low, high;
-};
 
 /// Pixels around a box that count as covered, for the rounding of directions.
 constexpr double pixel_margin = 0.25;
@@ -38,11 +34,7 @@ public:
           near_(std::size_t(count_.x) * std::size_t(count_.y), std::numeric_limits<double>::infinity()),
           far_(near_.size(), 0.0) {}
 
-    /// Width of a pixel's cone at this distance from the eye.
-    [[nodiscard]] double cone_width(double distance) const { return double(view_.eye.w) * distance; }
-    [[nodiscard]] double distance_to(const Box& box) const {
-        return glm::length(glm::max(glm::max(box.low - eye_, eye_ - box.high), dvec3(0.0)));
-    }
+    [[nodiscard]] ConeOfSight cone() const { return {eye_, double(view_.eye.w)}; }
 
     /// Does any ray of the band come near the box?
     [[nodiscard]] bool sees(const Box& box) const {
@@ -53,7 +45,7 @@ public:
     void add(const Box& box) {
         const Rectangle r = project(box);
         if (r.low.x > r.high.x || r.low.y > r.high.y) return;
-        const double near = distance_to(box) * (1.0 - 1e-6) - 2.0 * slack_;
+        const double near = cone().distance_to(box) * (1.0 - 1e-6) - 2.0 * slack_;
         const double far =
             glm::length(glm::max(glm::abs(box.low - eye_), glm::abs(box.high - eye_))) * (1.0 + 1e-6) +
             2.0 * slack_;
@@ -115,53 +107,14 @@ private:
     std::vector<double> far_;
 };
 
-Box box_of(const Tile& tile, double root_side, int n) {
-    const double side = root_side / std::pow(double(n), tile.level);
-    const dvec3 low = dvec3(tile.position) * side;
-    return {low, low + side};
-}
-
-/// Goes down the tree as rays do (descend.glsl), and leaves out what the view does not show.
-class Walk {
-public:
-    Walk(const Tree& tree, BlockGrid& grid)
-        : tree_(tree), grid_(grid), shape_(tree.shape()), root_side_(double(shape_.resolution())) {}
-
-    void visit(std::uint32_t entry) {
-        const interop::NodeEntry& node = tree_.node(entry);
-        const Tile& tile = tree_.tile(entry);
-        const Box box = box_of(tile, root_side_, shape_.n);
-        if (!grid_.sees(box)) return;
-        const double voxel_side = (box.high.x - box.low.x) / shape_.m;
-        const bool may_go_down =
-            tile.level < shape_.max_level && voxel_side > 0.999 * grid_.cone_width(grid_.distance_to(box));
-        // A tile without children or brick is asked for, or stood in for, as a whole.
-        const bool knows_children = (node.child_mask.x | node.child_mask.y) != 0;
-        if (!may_go_down && (node.brick == 0 || !knows_children)) {
-            grid_.add(box);
-            return;
-        }
-        for (int child = 0; child < shape_.child_count(); ++child) {
-            if ((node.child_mask[child / 32] >> (child % 32) & 1U) == 0) continue;
-            if (!may_go_down || node.children == 0)
-                grid_.add(box_of(child_of(tile, shape_.n, child), root_side_, shape_.n));
-            else
-                visit(node.children + std::uint32_t(child));
-        }
-    }
-
-private:
-    const Tree& tree_;
-    BlockGrid& grid_;
-    TreeShape shape_;
-    double root_side_;
-};
-
 }  // namespace
 
 std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, const Tree& tree) {
     BlockGrid grid(view, double(tree.shape().resolution()));
-    Walk(tree, grid).visit(0);
+    FrontCells(
+        tree, grid.cone(), [&](const Box& box) { return grid.sees(box); },
+        [&](const Box& box) { grid.add(box); })
+        .walk();
     return grid.starts();
 }
 

@@ -86,6 +86,8 @@ private:
     std::array<gl::Program, 4> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE
     std::array<gl::Program, 2> shadow_;   ///< PROGRESSIVE
     gl::Buffer view_;
+    gl::Buffer shadow_ends_;
+    gl::TextureHandle shadow_ends_texture_;
     gl::Buffer rays_;
     gl::Buffer lists_;
     gl::Buffer queries_;

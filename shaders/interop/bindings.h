@@ -54,5 +54,6 @@
 #define TEXTURE_BRICK_MASKS 1
 #define TEXTURE_BRICK_COLOR 2   // or coverage alone
 #define TEXTURE_BRICK_NORMAL 3
+#define TEXTURE_SHADOW_ENDS 4
 
 #endif
