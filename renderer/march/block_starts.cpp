@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "renderer/march/front_cells.h"
 #include "shaders/interop/config.h"
 
 namespace cairn::renderer {
@@ -11,13 +12,10 @@ namespace {
 
 using glm::dvec3;
 
-/// A part of the root cube, in voxels of the finest level.
-struct Box {
-    dvec3 low, high;
-};
-
 /// Pixels around a box that count as covered, for the rounding of directions.
 constexpr double pixel_margin = 0.25;
+/// Nearer to the eye's plane, in voxels, nothing is projected.
+constexpr double least_depth = 1e-3;
 /// The same for positions, as a share of the largest coordinate: a few steps of a float.
 constexpr double place_margin = 0x1p-21;
 
@@ -36,11 +34,7 @@ public:
           near_(std::size_t(count_.x) * std::size_t(count_.y), std::numeric_limits<double>::infinity()),
           far_(near_.size(), 0.0) {}
 
-    /// Width of a pixel's cone at this distance from the eye.
-    [[nodiscard]] double cone_width(double distance) const { return double(view_.eye.w) * distance; }
-    [[nodiscard]] double distance_to(const Box& box) const {
-        return glm::length(glm::max(glm::max(box.low - eye_, eye_ - box.high), dvec3(0.0)));
-    }
+    [[nodiscard]] ConeOfSight cone() const { return {eye_, double(view_.eye.w)}; }
 
     /// Does any ray of the band come near the box?
     [[nodiscard]] bool sees(const Box& box) const {
@@ -51,7 +45,7 @@ public:
     void add(const Box& box) {
         const Rectangle r = project(box);
         if (r.low.x > r.high.x || r.low.y > r.high.y) return;
-        const double near = distance_to(box) * (1.0 - 1e-6) - 2.0 * slack_;
+        const double near = cone().distance_to(box) * (1.0 - 1e-6) - 2.0 * slack_;
         const double far =
             glm::length(glm::max(glm::abs(box.low - eye_), glm::abs(box.high - eye_))) * (1.0 + 1e-6) +
             2.0 * slack_;
@@ -81,28 +75,24 @@ private:
 
     [[nodiscard]] Rectangle project(const Box& box) const {
         const glm::ivec2 last(view_.size_shadow.x - 1, view_.band.y - 1);
-        glm::dvec2 low(std::numeric_limits<double>::infinity());
-        glm::dvec2 high(-std::numeric_limits<double>::infinity());
-        int behind = 0;
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::bvec3 side((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
-            const dvec3 point = glm::mix(box.low - slack_, box.high + slack_, side) - eye_;
-            const double depth = glm::dot(point, forward_);
-            if (depth < 1e-3) {
-                ++behind;
-                continue;
-            }
-            const glm::dvec2 place(glm::dot(point, across_) / depth, glm::dot(point, down_) / depth);
-            const glm::dvec2 pixel = (place + 1.0) * half_size_ - 0.5 - glm::dvec2(0.0, double(view_.band.x));
-            low = glm::min(low, pixel);
-            high = glm::max(high, pixel);
-        }
-        if (behind == 8) return {glm::ivec2(0), glm::ivec2(-1)};
+        const dvec3 middle = 0.5 * (box.low + box.high) - eye_;
+        const dvec3 half = 0.5 * (box.high - box.low) + slack_;
+        const double depth = glm::dot(middle, forward_);
+        const double half_depth = glm::dot(half, glm::abs(forward_));
+        if (depth + half_depth < least_depth) return {glm::ivec2(0), glm::ivec2(-1)};
         // A box that the eye's plane cuts may be anywhere.
-        if (behind != 0) return {glm::ivec2(0), last};
-        low = glm::clamp(glm::ceil(low - pixel_margin), glm::dvec2(0.0), glm::dvec2(last + 1));
-        high = glm::clamp(glm::floor(high + pixel_margin), glm::dvec2(-1.0), glm::dvec2(last));
-        return {glm::ivec2(low), glm::ivec2(high)};
+        if (depth - half_depth < least_depth) return {glm::ivec2(0), last};
+        const glm::dvec2 place(glm::dot(middle, across_), glm::dot(middle, down_));
+        const glm::dvec2 reach(glm::dot(half, glm::abs(across_)), glm::dot(half, glm::abs(down_)));
+        const double nearest = 1.0 / (depth - half_depth);
+        const double farthest = 1.0 / (depth + half_depth);
+        const glm::dvec2 low = glm::min((place - reach) * nearest, (place - reach) * farthest);
+        const glm::dvec2 high = glm::max((place + reach) * nearest, (place + reach) * farthest);
+        const glm::dvec2 first_pixel(-0.5, -0.5 - double(view_.band.x));
+        const glm::dvec2 low_pixel = glm::ceil((low + 1.0) * half_size_ + first_pixel - pixel_margin);
+        const glm::dvec2 high_pixel = glm::floor((high + 1.0) * half_size_ + first_pixel + pixel_margin);
+        return {glm::ivec2(glm::clamp(low_pixel, glm::dvec2(0.0), glm::dvec2(last + 1))),
+                glm::ivec2(glm::clamp(high_pixel, glm::dvec2(-1.0), glm::dvec2(last)))};
     }
 
     const interop::MarchView& view_;
@@ -117,51 +107,14 @@ private:
     std::vector<double> far_;
 };
 
-Box box_of(const Tile& tile, double root_side, int n) {
-    const double side = root_side / std::pow(double(n), tile.level);
-    const dvec3 low = dvec3(tile.position) * side;
-    return {low, low + side};
-}
-
-/// Goes down the tree as rays do (descend.glsl), and leaves out what the view does not show.
-class Walk {
-public:
-    Walk(const Tree& tree, BlockGrid& grid)
-        : tree_(tree), grid_(grid), shape_(tree.shape()), root_side_(double(shape_.resolution())) {}
-
-    void visit(std::uint32_t entry) {
-        const interop::NodeEntry& node = tree_.node(entry);
-        const Tile& tile = tree_.tile(entry);
-        const Box box = box_of(tile, root_side_, shape_.n);
-        if (!grid_.sees(box)) return;
-        const double voxel_side = (box.high.x - box.low.x) / shape_.m;
-        const bool may_go_down =
-            tile.level < shape_.max_level && voxel_side > 0.999 * grid_.cone_width(grid_.distance_to(box));
-        if (!may_go_down) {
-            grid_.add(box);
-            return;
-        }
-        for (int child = 0; child < shape_.child_count(); ++child) {
-            if ((node.child_mask[child / 32] >> (child % 32) & 1U) == 0) continue;
-            if (node.children == 0)
-                grid_.add(box_of(child_of(tile, shape_.n, child), root_side_, shape_.n));
-            else
-                visit(node.children + std::uint32_t(child));
-        }
-    }
-
-private:
-    const Tree& tree_;
-    BlockGrid& grid_;
-    TreeShape shape_;
-    double root_side_;
-};
-
 }  // namespace
 
 std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, const Tree& tree) {
     BlockGrid grid(view, double(tree.shape().resolution()));
-    Walk(tree, grid).visit(0);
+    FrontCells(
+        tree, grid.cone(), [&](const Box& box) { return grid.sees(box); },
+        [&](const Box& box) { grid.add(box); })
+        .walk();
     return grid.starts();
 }
 

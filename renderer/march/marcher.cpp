@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "gl/limits.h"
 #include "renderer/march/block_starts.h"
+#include "renderer/march/shadow_ends.h"
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
 
@@ -47,10 +48,15 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& opt
       kind_(std::move(kind)),
       defines_(defines_of(shape, has_color, options_)),
       view_(sizeof(interop::MarchView), "view"),
+      shadow_ends_(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE * sizeof(float), "ends of shadow rays"),
       queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
     defines_.insert(defines_.end(), kind_.defines.begin(), kind_.defines.end());
     if (shape.has_windows())
         windows_ = gl::Buffer(window_header_bytes + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows");
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    shadow_ends_texture_ = gl::TextureHandle(id);
+    glTextureBuffer(id, GL_R32F, shadow_ends_.id());
     (void)primary_program(PassKind::patient);
     (void)shadow_program(PassKind::patient);
 }
@@ -110,7 +116,15 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         usage_ = gl::Buffer(usage_words * sizeof(std::uint32_t), "brick usage");
         usage_.fill(0);
     }
-    view_.write(0, &view, sizeof(view));
+    interop::MarchView marched = view;
+    if (options_.block_starts && view.size_shadow.z != 0 && view.light.w == 0.0F) {
+        const ShadowEnds ends = shadow_ends(view, tree);
+        shadow_ends_.write(0, ends.ends.data(), ends.ends.size() * sizeof(float));
+        marched.shadow_across = ends.across;
+        marched.shadow_down = ends.down;
+        marched.size_shadow.w = 1;
+    }
+    view_.write(0, &marched, sizeof(marched));
     std::vector<interop::BlockStart> starts =
         options_.block_starts ? block_starts(view, tree) : all_block_starts(view);
     if (mix.mesh_nearest != 0) add_empty_blocks(view, starts);
@@ -168,6 +182,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     usage_.bind_storage(SSBO_USAGE);
     image_.bind_storage(SSBO_IMAGE);
     starts_.bind_storage(SSBO_BLOCK_STARTS);
+    glBindTextureUnit(TEXTURE_SHADOW_ENDS, shadow_ends_texture_.id());
     tree.bind_for_reading();
     pool.bind_for_reading();
     bind_mix();

@@ -120,6 +120,8 @@ private:
     std::array<gl::Program, 4> shadow_;    ///< PROGRESSIVE + 2 * meshes
     gl::Buffer view_;
     gl::Buffer windows_;  ///< empty where the tree has none
+    gl::Buffer shadow_ends_;
+    gl::TextureHandle shadow_ends_texture_;
     gl::Buffer rays_;
     gl::Buffer lists_;
     gl::Buffer queries_;

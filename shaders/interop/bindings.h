@@ -55,6 +55,7 @@
 #define TEXTURE_BRICK_MASKS 1
 #define TEXTURE_BRICK_COLOR 2   // or coverage alone
 #define TEXTURE_BRICK_NORMAL 3
+#define TEXTURE_SHADOW_ENDS 4
 #define TEXTURE_MESH_NEAREST 8   // R32F a pixel: distance of the nearest mesh, MESH_MISS where there is none
 #define TEXTURE_MESH_SURFACE 9   // RGBA32UI a pixel: what is there (shaders/mesh/mesh_surface.glsl)
 #define TEXTURE_PROXY_SPAN 10    // RG32F a pixel: distance of the proxy's first face, minus that of its last

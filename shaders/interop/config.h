@@ -114,6 +114,9 @@
 // Rays of a block of BLOCK_SIDE^2 pixels start together (renderer/march/block_starts.h).
 #define BLOCK_SIDE 8
 
+// Ends of shadow rays to a directional light: a grid across its direction (renderer/march/shadow_ends.h).
+#define SHADOW_ENDS_SIDE 128
+
 // What a picture shows; in this order in renderer.h.
 #define SHOW_SURFACE 0
 #define SHOW_LEVELS 1

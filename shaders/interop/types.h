@@ -109,7 +109,9 @@ struct MarchView {
     vec4 light_color;      // w: ambient
     vec4 background;
     vec4 surface_color;    // base colour everywhere, when the pool holds none
-    ivec4 size_shadow;     // xy: pixels of the picture; z: 1 = trace shadow rays
+    vec4 shadow_across;    // ShadowEnds, when there are any
+    vec4 shadow_down;
+    ivec4 size_shadow;     // xy: pixels of the picture; z: 1 = trace shadow rays; w: 1 = there are ShadowEnds
     ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone; z: SHOW_*;
                            // w: a pixel of the background
 };
@@ -176,7 +178,7 @@ static_assert(sizeof(NodeEntry) == 16, "GLSL sees another layout");
 static_assert(sizeof(BrickTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(FractalTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(BrickPair) == 12, "GLSL sees another layout");
-static_assert(sizeof(MarchView) == 160, "GLSL sees another layout");
+static_assert(sizeof(MarchView) == 192, "GLSL sees another layout");
 static_assert(sizeof(MarchWindow) == 80, "GLSL sees another layout");
 static_assert(sizeof(VolumeView) == 16, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");

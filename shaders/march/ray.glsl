@@ -71,17 +71,19 @@ void stay_behind_planes(inout Ray ray) {
 bool step_over(inout Ray ray, int shift) {
     const ivec3 low = cell_low(ray.voxel, shift);
     const ivec3 high = low + (cell_side(shift) - 1);
-    const bvec3 forward = equal(ray.positive, ivec3(1));
-    const vec3 bound = vec3(mix(low, high + 1, forward));
+    const ivec3 last = mix(low, high, equal(ray.positive, ivec3(1)));  // before the plane where it leaves
+    const vec3 bound = vec3(last + ray.positive);
     const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(1e30), ray.inert);
-    const float t_exit = max(min(t.x, min(t.y, t.z)), ray.t);
-    const bool x = t.x <= t.y && t.x <= t.z;
-    const bool y = !x && t.y <= t.z;
-    const bvec3 leaves = bvec3(x, y, !x && !y);
-    const ivec3 inside = clamp(ivec3(floor(ray.origin + ray.direction * t_exit)), low, high);
-    // Rounding must not carry the other coordinates backwards.
-    const ivec3 kept = mix(min(inside, ray.voxel), max(inside, ray.voxel), forward);
-    ray.voxel = mix(kept, mix(low - 1, high + 1, forward), leaves);
+    const float t_plane = min(t.x, min(t.y, t.z));
+    const float t_exit = max(t_plane, ray.t);
+    // Rounding must carry the other coordinates neither out of the cell nor backwards.
+    const ivec3 inside = ivec3(floor(ray.origin + ray.direction * t_exit));
+    const ivec3 kept = clamp(inside, min(ray.voxel, last), max(ray.voxel, last));
+    const bool x = t.x == t_plane;
+    const bool y = !x && t.y == t_plane;
+    const ivec3 leaves = ivec3(x, y, !x && !y);
+    ray.voxel = mix(kept, last + 2 * ray.positive - 1, equal(leaves, ivec3(1)));
     ray.t = t_exit;
-    return all(greaterThanEqual(ray.voxel, ivec3(0))) && all(lessThan(ray.voxel, ivec3(MARCHED_SIDE))) && t_exit < ray.t_end;
+    const uvec3 place = uvec3(ray.voxel);
+    return max(place.x, max(place.y, place.z)) < uint(MARCHED_SIDE) && t_exit < ray.t_end;
 }

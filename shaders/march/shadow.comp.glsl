@@ -13,6 +13,8 @@
 
 layout(local_size_x = 64) in;
 
+layout(binding = TEXTURE_SHADOW_ENDS) uniform samplerBuffer shadow_ends;
+
 uniform uint ray_count;
 uniform uint list_in;
 uniform uint list_out;
@@ -49,6 +51,15 @@ bool visit(inout Ray ray, Sample s) {
     const bool own = s.t < reach && dot(from_receiver, receiver_normal) < height;
     if (!own) visibility = behind(visibility, coverage_of(s));
     return visibility > OPAQUE_TRANSMITTANCE;
+}
+
+// Distance behind which nothing stands between the receiver and a directional light.
+float end_of_occluders(vec3 to_light) {
+    if (view.size_shadow.w == 0) return 1e30;
+    const vec2 place = vec2(dot(receiver, view.shadow_across.xyz) + view.shadow_across.w,
+                            dot(receiver, view.shadow_down.xyz) + view.shadow_down.w);
+    const ivec2 texel = clamp(ivec2(floor(place)), 0, SHADOW_ENDS_SIDE - 1);
+    return texelFetch(shadow_ends, texel.y * SHADOW_ENDS_SIDE + texel.x).r - dot(receiver, to_light);
 }
 
 // Side of the voxels that a cone of this width is shown with (see march()).
@@ -99,7 +110,7 @@ void main() {
 #endif
 
     const vec4 light = light_there();
-    const float reach = light.w > 0.5 ? distance(light.xyz, receiver) : 1e30;
+    const float reach = light.w > 0.5 ? distance(light.xyz, receiver) : end_of_occluders(to_light);
     Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
 #if WINDOWS
     ray.window = seen_window;
