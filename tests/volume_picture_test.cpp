@@ -198,6 +198,24 @@ TEST_F(VolumePictures, FramesWithinABudgetEndWithTheWholePicture) {
     EXPECT_EQ(image.rgba, expected.rgba);
 }
 
+// Crassin et al. 2008, section 7: what a view costs does not grow with what is not seen.
+TEST_F(VolumePictures, BricksOfAViewDoNotGrowWithTheVirtualResolution) {
+    const auto tile = std::make_shared<DenseField>(blobs(glm::ivec3(64), 9, 20), 4);
+    std::uint64_t expected = 0;
+    for (const int copies : {32, 128, 512}) {  // 2048^3 to 32768^3 voxels
+        const auto field = std::make_shared<renderer::RepeatedField>(tile, copies);
+        View view = glowing_view({glm::dvec3(-1.0), glm::dvec3(2.0 * copies - 1.0)}, 96, 72);
+        view.pixel_error = 1.0;
+        Renderer renderer(field, ramp(4.0 / copies, 0.0),
+                          {.max_resolution = 1 << 17, .brick_pool_bytes = 32U << 20U}, fog);
+        (void)renderer.render(view);
+        const std::uint64_t bricks = renderer.statistics().bricks_produced;
+        if (expected == 0) expected = bricks;
+        EXPECT_GT(bricks, 10U) << copies << " copies";
+        EXPECT_LE(bricks, expected * 11 / 10) << copies << " copies";
+    }
+}
+
 TEST_F(VolumePictures, CopiesLookAsTheyDoSideBySideInMemory) {
     const scenes::Volume one = blobs(glm::ivec3(16), 8, 6);
     scenes::Volume eight = one;
