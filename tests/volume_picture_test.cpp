@@ -61,6 +61,35 @@ TEST_P(VolumeTrees, PictureFromBricksEqualsTheOneFromADenseTexture) {
     EXPECT_LE(difference.largest, 1) << difference.worst;
 }
 
+// A density that rises evenly is the same at every level, so a seam between levels can be nothing but a
+// fault.
+TEST_P(VolumeTrees, BordersBetweenLevelsDoNotShow) {
+    const auto [n, m] = GetParam();
+    scenes::Volume slope = blobs(glm::ivec3(128), 1, 0);
+    for (std::size_t i = 0; i < slope.samples.size(); ++i) {
+        const glm::dvec3 place(glm::ivec3(i % 128, i / 128 % 128, i / 128 / 128));
+        slope.samples[i] =
+            std::uint16_t(std::lround(65535.0 * (0.1 + 0.8 * glm::dot(place, {0.3, 0.2, 0.5}) / 127.0)));
+    }
+    // Nothing of the sides is seen through so much.
+    const TransferFunction transfer({{0.0, {1.0, 0.0, 0.2}, 4.0}, {1.0, {0.0, 1.0, 0.2}, 5.0}});
+    View view = glowing_view(slope.bounds(), 64, 48);
+    view.camera = {{-0.1, 0.05, -0.9}, {0.1, 0.0, 1.0}, {0, 1, 0}, 0.5};
+    const TreeOptions dense_options{.n = n, .m = 64, .brick_pool_bytes = 8U << 20U};
+    const Image dense = Renderer(slope, transfer, dense_options, fog).render(view);
+    view.pixel_error = 3.0;
+    view.show = renderer::Show::levels;
+    Renderer renderer(slope, transfer, {.n = n, .m = m, .brick_pool_bytes = 8U << 20U}, fog);
+    const Image levels = renderer.render(view);
+    bool mixed = false;  // pixels that show more than one level have a mixed colour
+    for (std::size_t i = 4; i < levels.rgba.size(); i += 4)
+        mixed = mixed || levels.rgba[i] != levels.rgba[0] || levels.rgba[i + 1] != levels.rgba[1];
+    EXPECT_TRUE(mixed) << "only one level is in view";
+    view.show = renderer::Show::surface;
+    const PictureDifference difference = difference_of(renderer.render(view), dense);
+    EXPECT_LE(difference.largest, 1) << difference.worst;
+}
+
 TEST_P(VolumeTrees, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const auto [n, m] = GetParam();
     const scenes::Volume volume = blobs(glm::ivec3(64), 3, 20);
