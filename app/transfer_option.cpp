@@ -20,12 +20,13 @@ struct Named {
 
 // Colours are linear.
 constexpr std::array named = {
-    // What is denser than the densest third of the noise; for volumes that nothing is known of.
+    // For volumes that nothing is known of: what is denser than a tenth of the range, ever more opaque.
     Named{"solid", "0.1:0.75,0.7,0.62:0;0.3:0.75,0.7,0.62:0.5;1:0.95,0.92,0.85:2"},
     // Scans with contrast for bones: soft parts as a haze.
     Named{"bone", "0.08:0.5,0.08,0.04:0;0.25:0.6,0.15,0.08:0.015;0.4:0.85,0.7,0.5:0.4;1:1,0.97,0.9:3"},
     // Everything, thin: brighter where it is denser.
     Named{"haze", "0.02:0.1,0.25,0.6:0;0.5:0.5,0.6,0.8:0.01;1:1,0.95,0.85:0.06"},
+    // Each density as opaque as it is great.
     Named{"opaque", "0:0.8,0.75,0.7:0;1:0.8,0.75,0.7:4"},
 };
 

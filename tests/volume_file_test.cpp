@@ -40,8 +40,9 @@ std::string bytes_of(T value, bool big = false) {
 
 std::string metaimage(const std::string& size, const std::string& type, const std::string& data,
                       const std::string& more = "") {
-    return "ObjectType = Image\nNDims = 3\nDimSize = " + size + "\n" + more + "ElementType = " + type +
-           "\nElementDataFile = LOCAL\n" + data;
+    return fmt::format(
+        "ObjectType = Image\nNDims = 3\nDimSize = {}\n{}ElementType = {}\nElementDataFile = LOCAL\n{}", size,
+        more, type, data);
 }
 
 /// A header of NIfTI-1 with what a test changes in it.
@@ -103,8 +104,9 @@ TEST_F(VolumeFiles, MetaImageHasItsSamplesWhereItsHeaderSays) {
         data += char(10 * i);
     const std::string place = "Offset = 100 200 300\nElementSpacing = 1 2 3\n";
     for (const bool packed : {false, true}) {
-        const Volume v = read("a.mha", metaimage("2 3 4", "MET_UCHAR", packed ? zlib_of(data) : data,
-                                                 place + (packed ? "CompressedData = True\n" : "")));
+        const Volume v =
+            read("a.mha", metaimage("2 3 4", "MET_UCHAR", packed ? zlib_of(data) : data,
+                                    fmt::format("{}{}", place, packed ? "CompressedData = True\n" : "")));
         EXPECT_EQ(v.size, glm::ivec3(2, 4, 3));  // z upwards is the world's y
         EXPECT_EQ(v.spacing, glm::dvec3(1, 3, 2));
         EXPECT_EQ(v.low, 0.0);

@@ -61,6 +61,35 @@ TEST_P(VolumeTrees, PictureFromBricksEqualsTheOneFromADenseTexture) {
     EXPECT_LE(difference.largest, 1) << difference.worst;
 }
 
+// A density that rises evenly is the same at every level, so a seam between levels can be nothing but a
+// fault.
+TEST_P(VolumeTrees, BordersBetweenLevelsDoNotShow) {
+    const auto [n, m] = GetParam();
+    scenes::Volume slope = blobs(glm::ivec3(128), 1, 0);
+    for (std::size_t i = 0; i < slope.samples.size(); ++i) {
+        const glm::dvec3 place(glm::ivec3(i % 128, i / 128 % 128, i / 128 / 128));
+        slope.samples[i] =
+            std::uint16_t(std::lround(65535.0 * (0.1 + 0.8 * glm::dot(place, {0.3, 0.2, 0.5}) / 127.0)));
+    }
+    // Nothing of the sides is seen through so much.
+    const TransferFunction transfer({{0.0, {1.0, 0.0, 0.2}, 4.0}, {1.0, {0.0, 1.0, 0.2}, 5.0}});
+    View view = glowing_view(slope.bounds(), 64, 48);
+    view.camera = {{-0.1, 0.05, -0.9}, {0.1, 0.0, 1.0}, {0, 1, 0}, 0.5};
+    const TreeOptions dense_options{.n = n, .m = 64, .brick_pool_bytes = 8U << 20U};
+    const Image dense = Renderer(slope, transfer, dense_options, fog).render(view);
+    view.pixel_error = 3.0;
+    view.show = renderer::Show::levels;
+    Renderer renderer(slope, transfer, {.n = n, .m = m, .brick_pool_bytes = 8U << 20U}, fog);
+    const Image levels = renderer.render(view);
+    bool mixed = false;  // pixels that show more than one level have a mixed colour
+    for (std::size_t i = 4; i < levels.rgba.size(); i += 4)
+        mixed = mixed || levels.rgba[i] != levels.rgba[0] || levels.rgba[i + 1] != levels.rgba[1];
+    EXPECT_TRUE(mixed) << "only one level is in view";
+    view.show = renderer::Show::surface;
+    const PictureDifference difference = difference_of(renderer.render(view), dense);
+    EXPECT_LE(difference.largest, 1) << difference.worst;
+}
+
 TEST_P(VolumeTrees, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const auto [n, m] = GetParam();
     const scenes::Volume volume = blobs(glm::ivec3(64), 3, 20);
@@ -196,6 +225,24 @@ TEST_F(VolumePictures, FramesWithinABudgetEndWithTheWholePicture) {
     } while (!renderer.statistics().converged);
     EXPECT_GT(frames, 1);
     EXPECT_EQ(image.rgba, expected.rgba);
+}
+
+// Crassin et al. 2008, section 7: what a view costs does not grow with what is not seen.
+TEST_F(VolumePictures, BricksOfAViewDoNotGrowWithTheVirtualResolution) {
+    const auto tile = std::make_shared<DenseField>(blobs(glm::ivec3(64), 9, 20), 4);
+    std::uint64_t expected = 0;
+    for (const int copies : {32, 128, 512}) {  // 2048^3 to 32768^3 voxels
+        const auto field = std::make_shared<renderer::RepeatedField>(tile, copies);
+        View view = glowing_view({glm::dvec3(-1.0), glm::dvec3(2.0 * copies - 1.0)}, 96, 72);
+        view.pixel_error = 1.0;
+        Renderer renderer(field, ramp(4.0 / copies, 0.0),
+                          {.max_resolution = 1 << 17, .brick_pool_bytes = 32U << 20U}, fog);
+        (void)renderer.render(view);
+        const std::uint64_t bricks = renderer.statistics().bricks_produced;
+        if (expected == 0) expected = bricks;
+        EXPECT_GT(bricks, 10U) << copies << " copies";
+        EXPECT_LE(bricks, expected * 11 / 10) << copies << " copies";
+    }
 }
 
 TEST_F(VolumePictures, CopiesLookAsTheyDoSideBySideInMemory) {

@@ -49,6 +49,22 @@ float gather(vec4 optics, float world_length, Lit lit) {
     return weight;
 }
 
+// Where the pixel's shadow ray will start: at the depth behind which less than half of what is seen lies. It passes through
+// voxels evenly, so a surface is not shadowed in steps. Where more than half is let through, the voxel that weighs most.
+#define HALF_PASSED 2.0  // weighs more than any voxel
+void note_depth(Ray ray, Sample s, float weight) {
+    const float after = state.color.a;
+    const float before = after + weight;
+    if (before > 0.5 && after <= 0.5) {
+        const float share = log(2.0 * before) / max(log(before / max(after, 1e-9)), 1e-6);
+        state.normal_depth.w = mix(2.0 * s.t - ray.t, ray.t, clamp(share, 0.0, 1.0));
+        state.voxel_t_weight.w = floatBitsToUint(HALF_PASSED);
+    } else if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
+        state.normal_depth.w = s.t;
+        state.voxel_t_weight.w = floatBitsToUint(weight);
+    }
+}
+
 bool visit(inout Ray ray, Sample s) {
     const Neighbours around = neighbours_of(s);
     const Chord chord = chord_of(ray, s);
@@ -65,10 +81,7 @@ bool visit(inout Ray ray, Sample s) {
         weight += gather(optics, chord.step * volume.voxel_size, lit);
         before = behind_it;
     }
-    if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
-        state.voxel_t_weight.w = floatBitsToUint(weight);
-        state.normal_depth.w = s.t;
-    }
+    note_depth(ray, s, weight);
     return state.color.a > OPAQUE_TRANSMITTANCE;
 }
 
