@@ -173,6 +173,7 @@ struct Renderer::Parts {
     [[nodiscard]] PassResult march(PassKind kind);
     [[nodiscard]] bool serve_until(Clock::time_point deadline, const PassResult& pass);
     void subdivide(std::uint32_t entry);
+    void give_children(std::uint32_t entry);
 
     TreeShape shape;
     std::unique_ptr<Content> content;
@@ -210,7 +211,10 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
 void Renderer::Parts::subdivide(std::uint32_t entry) {
-    if (!tree.wants_children(entry)) return;
+    if (tree.wants_children(entry)) give_children(entry);
+}
+
+void Renderer::Parts::give_children(std::uint32_t entry) {
     const std::optional<std::uint32_t> first = tree.add_children(entry);
     if (!first) return;
     ++statistics.nodes_subdivided;
@@ -255,7 +259,7 @@ void Renderer::Parts::find_tiles_asked_for(const std::vector<std::uint32_t>& ent
         add_children_of(entry);
     find_tiles(windows, tree, marched_windows, [&](std::uint32_t entry) {
         if (!asked.contains(entry)) return;
-        subdivide(entry);
+        give_children(entry);
         add_children_of(entry);
     });
 }

@@ -79,8 +79,8 @@ struct TreeOptions {
     int n = 4;                  ///< children an axis: 2 or 4
     int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
-    /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest voxels
-    /// are at least 2^-60 of the root cube.
+    /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest
+    /// voxels are at least 2^-60 of the root cube.
     std::optional<int> max_level = std::nullopt;
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
