@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/driver.h"
+#include "app/fractal.h"
 #include "app/measure.h"
 #include "app/png.h"
 #include "app/progress.h"
@@ -14,6 +15,8 @@
 #include "app/scene_input.h"
 #include "app/verbs.h"
 #include "app/view_options.h"
+#include "base/error.h"
+#include "renderer/produce/fractal_content.h"
 #include "renderer/renderer.h"
 
 namespace cairn::app {
@@ -27,12 +30,14 @@ struct Options {
     CommonOptions common;
     std::optional<std::filesystem::path> output;
     ViewOptions view;
+    int zoom = 0;
 };
 
 void add_options(CLI::App& verb, Options& options) {
     add_output_option(verb, options.output, {".png"},
                       fmt::format("the picture (default: {} in the current folder)", default_output));
     add_view_options(verb, options.view);
+    add_zoom_option(verb, options.zoom);
     add_common_options(verb, options.common);
 }
 
@@ -51,6 +56,13 @@ double converged_frame_ms(renderer::Renderer& renderer, const renderer::View& vi
     return *middle;
 }
 
+renderer::Renderer fractal_renderer(const Options& options) {
+    const renderer::TreeOptions tree = fractal_tree(options.view);
+    const gl::ShaderSource& shaders = options.common.driver.shaders;
+    auto content = std::make_unique<renderer::FractalContent>(renderer::tree_shape_of(tree), shaders);
+    return {std::move(content), tree, shaders};
+}
+
 ExitCode run(const Options& options) {
     const bool quiet = options.common.report.quiet;
     const std::filesystem::path output = options.output.value_or(default_output);
@@ -58,15 +70,26 @@ ExitCode run(const Options& options) {
     Report report(options.common.report);
     report.add("scene", options.common.scene.scene);
     Stopwatch watch;
-    auto input = std::make_unique<SceneInput>(load_input(options.common.scene, quiet));
-    report.add("load_ms", watch.lap_ms());
-    report.add("triangles", input->snapshot.triangle_count);
-    const renderer::View view = view_of(options.view, input->snapshot);
+    const bool fractal = is_fractal(options.common.scene);
+    if (!fractal && options.zoom != 0) {
+        throw Error(Fault::usage, "--zoom", "this scene has a finest level",
+                    "use --camera, or builtin:fractal");
+    }
+    std::unique_ptr<SceneInput> input;
+    if (!fractal) {
+        input = std::make_unique<SceneInput>(load_input(options.common.scene, quiet));
+        report.add("load_ms", watch.lap_ms());
+        report.add("triangles", input->snapshot.triangle_count);
+    }
+    const renderer::View view =
+        fractal ? fractal_view(options.view, options.zoom) : view_of(options.view, input->snapshot);
 
     const Driver driver(options.common.driver);
     report.add("context_ms", watch.lap_ms());
-    renderer::Renderer renderer(input->scene, input->snapshot, options.view.tree,
-                                options.common.driver.shaders);
+    renderer::Renderer renderer = fractal
+                                      ? fractal_renderer(options)
+                                      : renderer::Renderer(input->scene, input->snapshot, options.view.tree,
+                                                           options.common.driver.shaders);
     input.reset();  // the renderer has its own copy of what it needs: do not pay twice
     report.add("setup_ms", watch.lap_ms());
 
