@@ -7,11 +7,13 @@
 //
 // CAIRN_RAY_COUNT in the environment sets how many rays each test takes; the default is a sample.
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <random>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "tests/exact_rays.h"
@@ -24,7 +26,7 @@ namespace {
 using renderer::TreeShape;
 
 constexpr int direction_bits = 56;
-constexpr std::size_t batch_rays = 1U << 17U;
+constexpr std::size_t batch_rays = 125'000;  // of each kind as many
 
 std::size_t ray_count(std::size_t sample) {
     const char* text = std::getenv("CAIRN_RAY_COUNT");
@@ -87,6 +89,7 @@ glm::i64vec3 exact_direction(const glm::vec3& d) {
 
 struct Tally {
     std::size_t rays = 0, hits = 0, second_check = 0, wrong = 0;
+    std::array<std::size_t, kind_count> second_check_of{};  ///< of each Kind
     std::string first;
 };
 
@@ -123,9 +126,12 @@ Verdict judge(const std::vector<Space>& spaces, const ExactRay& ray, bool hit, c
 
 void count(Tally& tally, Verdict verdict, const Probe& probe, const glm::vec3& direction,
            const Crossed& ours) {
-    ++tally.rays;
+    const std::size_t kind = tally.rays++ % kind_count;
     tally.hits += probe.state.x == PROBE_HIT ? 1 : 0;
-    if (verdict == Verdict::within_margin) ++tally.second_check;
+    if (verdict == Verdict::within_margin) {
+        ++tally.second_check;
+        ++tally.second_check_of[kind];
+    }
     if (verdict != Verdict::wrong || tally.wrong++ != 0) return;
     tally.first = fmt::format("ray along ({}, {}, {}): {} voxel ({}, {}, {}) of space {}", direction.x,
                               direction.y, direction.z, probe.state.x == PROBE_HIT ? "met" : "missed, last",
@@ -136,8 +142,9 @@ void expect_none_wrong(const Tally& tally) {
     EXPECT_EQ(tally.wrong, 0U) << tally.first;
     EXPECT_GT(tally.hits * 20, tally.rays) << "hardly a ray met anything";
     EXPECT_LT(tally.second_check * 50, tally.rays) << "the second check decides too much";
-    fmt::print("{} rays, {} of them met a voxel; {} needed the second check; {} wrong\n", tally.rays,
-               tally.hits, tally.second_check, tally.wrong);
+    fmt::print("{} rays, {} of them met a voxel; {} needed the second check ({} of each kind); {} wrong\n",
+               tally.rays, tally.hits, tally.second_check, fmt::join(tally.second_check_of, ", "),
+               tally.wrong);
 }
 
 class RayTest : public GlTest {};
@@ -244,7 +251,7 @@ Tally through_windows(const TreeShape& shape, std::size_t rays, unsigned seed) {
         const DeepEye eye = deep_eye(shape, 44 / shape.n_shift() * number / (eyes - 1), random);
         const std::vector<renderer::Window> windows = renderer::windows_around(shape, eye.place);
         const std::vector<Space> spaces = spaces_of(windows, shape);
-        std::vector<Probe> probes(rays / eyes);
+        std::vector<Probe> probes(rays / eyes / kind_count * kind_count);
         for (std::size_t i = 0; i < probes.size(); ++i)
             probes[i].direction = glm::vec4(direction_of(Kind(i % kind_count), random), 0.0F);
         const std::vector<Probe> asked = probes;
