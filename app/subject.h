@@ -10,7 +10,7 @@
 
 namespace cairn::app {
 
-/// What a verb shows: a scene at a moment, or a volume.
+/// What a verb shows: a scene at a moment, a volume, or the built-in fractal.
 class Subject {
 public:
     /// Loads, and warns on stderr unless `quiet`. @throws Error as load_input() and scenes::load_volume() do.
@@ -25,6 +25,7 @@ public:
                                                    const gl::ShaderSource& shaders) const;
 
 private:
+    bool fractal_;  ///< builtin:fractal
     std::optional<SceneInput> scene_;
     std::shared_ptr<const renderer::Field> field_;  ///< when it is a volume
 };

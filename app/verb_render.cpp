@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/driver.h"
+#include "app/fractal.h"
 #include "app/measure.h"
 #include "app/png.h"
 #include "app/progress.h"
@@ -46,6 +47,7 @@ void add_options(CLI::App& verb, Options& options) {
     verb.add_option("--proxy", options.proxy,
                     "a closed mesh: only what lies inside it is shown of the\nvoxels")
         ->type_name("SCENE");
+    add_zoom_option(verb, options.view.zoom);
     add_common_options(verb, options.common);
 }
 

@@ -13,6 +13,7 @@
 #include <GLFW/glfw3.h>
 
 #include "app/driver.h"
+#include "app/fractal.h"
 #include "app/measure.h"
 #include "app/parse.h"
 #include "app/png.h"
@@ -203,6 +204,10 @@ ExitCode run(const Options& options) {
     const bool quiet = options.report.quiet;
     Report report(options.report);
     report.add("scene", options.scene.scene);
+    if (is_fractal(options.scene)) {
+        throw Error(Fault::usage, options.scene.scene, "the viewer's cameras do not reach its depth",
+                    "render it: cairn render builtin:fractal --zoom K");
+    }
     auto subject = std::make_unique<Subject>(options.scene, options.view, quiet);
     const renderer::View view = subject->view(options.view);
     const double size = scene_size(subject->bounds());

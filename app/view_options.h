@@ -24,6 +24,7 @@ struct ViewOptions {
     std::optional<std::string> brick_pool;   ///< likewise
     std::optional<TransferChoice> transfer;  ///< of a volume
     int copies = 1;                          ///< of a volume, along each axis
+    int zoom = 0;                            ///< of builtin:fractal, a power of two
 };
 void add_view_options(CLI::App& verb, ViewOptions& options);
 

@@ -190,6 +190,7 @@ struct Renderer::Parts {
     [[nodiscard]] bool serve_until(Clock::time_point deadline, const PassResult& pass);
     void subdivide(std::uint32_t entry);
     [[nodiscard]] int draw_mix(const interop::MarchView& view, int row);
+    void give_children(std::uint32_t entry);
 
     TreeShape shape;
     std::unique_ptr<Content> content;
@@ -274,7 +275,10 @@ int Renderer::Parts::draw_mix(const interop::MarchView& view, int row) {
 }
 
 void Renderer::Parts::subdivide(std::uint32_t entry) {
-    if (!tree.wants_children(entry)) return;
+    if (tree.wants_children(entry)) give_children(entry);
+}
+
+void Renderer::Parts::give_children(std::uint32_t entry) {
     const std::optional<std::uint32_t> first = tree.add_children(entry);
     if (!first) return;
     ++statistics.nodes_subdivided;
@@ -319,7 +323,7 @@ void Renderer::Parts::find_tiles_asked_for(const std::vector<std::uint32_t>& ent
         add_children_of(entry);
     find_tiles(windows, tree, marched_windows, [&](std::uint32_t entry) {
         if (!asked.contains(entry)) return;
-        subdivide(entry);
+        give_children(entry);
         add_children_of(entry);
     });
 }

@@ -106,8 +106,8 @@ TEST_P(Zoom, PicturesAtEachPowerAreTheSameBitForBitDownTo2ToTheMinus40) {
     for (int level = 3; level <= deepest(); ++level) {
         const Image image = renderer.render(zoomed_view(GetParam().n, level));
         const Difference difference = compare(image, first);
-        ASSERT_EQ(difference.pixels, 0U)
-            << "level " << level << ": " << difference.first << ", " << difference.silhouettes << " of silhouettes";
+        ASSERT_EQ(difference.pixels, 0U) << "level " << level << ": " << difference.first << ", "
+                                         << difference.silhouettes << " of silhouettes";
     }
 }
 
@@ -167,7 +167,8 @@ TEST_P(Zoom, WindowsShowWhatTheRootAloneShows) {
     far.camera.yfov = 0.015;
     View beside = outside;
     beside.camera.eye = {1.3, 1.2, 1.1};
-    for (const View& view : {zoomed_view(GetParam().n, 1), zoomed_view(GetParam().n, 2), outside, far, beside}) {
+    for (const View& view :
+         {zoomed_view(GetParam().n, 1), zoomed_view(GetParam().n, 2), outside, far, beside}) {
         const Image expected = whole.render(view);
         expect_a_picture(expected);
         // The eye is rounded to floats in other units: a ray that grazes a voxel's edge may take its other

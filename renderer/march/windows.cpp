@@ -75,8 +75,8 @@ std::vector<interop::MarchWindow> march_windows(const std::vector<Window>& windo
         if (light != nullptr) {
             const glm::dvec3 here = place_in(window, shape, *light);
             const bool far = glm::length(here) > far_light;
-            out.light = far ? glm::vec4(glm::vec3(glm::normalize(here)), 0.0F)
-                            : glm::vec4(glm::vec3(here), 1.0F);
+            out.light =
+                far ? glm::vec4(glm::vec3(glm::normalize(here)), 0.0F) : glm::vec4(glm::vec3(here), 1.0F);
         }
         if (i + 1 < windows.size()) {
             const glm::i64vec3 outer = windows[i + 1].low << std::int64_t(shape.n_shift());
@@ -112,8 +112,7 @@ void find_tiles(const std::vector<Window>& windows, const Tree& tree,
     for (std::size_t i = windows.size(); i-- > 0;) {
         const Window& window = windows[i];
         for (int number = 0; number < 8; ++number) {
-            const glm::i64vec3 tile =
-                window.low + glm::i64vec3(number & 1, number >> 1 & 1, number >> 2);
+            const glm::i64vec3 tile = window.low + glm::i64vec3(number & 1, number >> 1 & 1, number >> 2);
             const std::int64_t across = std::int64_t(1) << (shape.n_shift() * window.level);
             std::uint32_t& said = marched[i].tiles[number / 4][number % 4];
             const bool in_root = glm::all(glm::greaterThanEqual(tile, glm::i64vec3(0))) &&

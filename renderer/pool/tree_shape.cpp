@@ -23,7 +23,7 @@ bool TreeShape::has_windows() const {
 }
 
 int TreeShape::levels_in_window() const {
-    return (WINDOW_TILE_BITS - m_shift()) / n_shift();
+    return (window_tile_bits - m_shift()) / n_shift();
 }
 
 namespace {
@@ -44,7 +44,7 @@ TreeShape make_tree_shape(int n, int m, int max_resolution) {
                     fmt::format("{} is not between {} (one brick) and {}", max_resolution, m,
                                 1 << MAX_RESOLUTION_BITS));
     }
-    TreeShape shape{n, m, 0};
+    TreeShape shape{.n = n, .m = m, .max_level = 0};
     while (std::int64_t(shape.resolution()) * n <= max_resolution)
         ++shape.max_level;
     return shape;
@@ -52,7 +52,7 @@ TreeShape make_tree_shape(int n, int m, int max_resolution) {
 
 TreeShape make_deep_tree_shape(int n, int m, int max_level) {
     check_factors(n, m);
-    const TreeShape shape{n, m, max_level};
+    const TreeShape shape{.n = n, .m = m, .max_level = max_level};
     const int most = (most_voxel_bits - shape.m_shift()) / shape.n_shift();
     if (max_level < 0 || max_level > most) {
         throw Error(Fault::usage, "tree", fmt::format("{} levels are not between 0 and {}", max_level, most));

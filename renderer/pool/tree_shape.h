@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "shaders/interop/config.h"
 
 namespace cairn::renderer {
 
@@ -15,6 +16,9 @@ struct TreeShape {
     int n = 4;          ///< children an axis: 2 or 4
     int m = 16;         ///< voxels of a brick an axis, border not counted: 8, 16, 32 or 64
     int max_level = 4;  ///< level of the finest tiles; the root is level 0
+    /// Where rays go through windows, log2 of a tile's side in voxels there, at most: [m_shift(),
+    /// WINDOW_TILE_BITS].
+    int window_tile_bits = WINDOW_TILE_BITS;
 
     [[nodiscard]] int n_shift() const { return n == 4 ? 2 : 1; }
     [[nodiscard]] int m_shift() const { return m == 8 ? 3 : m == 16 ? 4 : m == 32 ? 5 : 6; }
@@ -23,8 +27,8 @@ struct TreeShape {
     [[nodiscard]] int voxel_level(int level) const { return m_shift() + n_shift() * level; }
     /// Voxels across the root cube at the finest level.
     [[nodiscard]] int resolution() const { return 1 << voxel_level(max_level); }
-    /// Too many voxels for a ray to count: it goes through windows (renderer/march/windows.h), and resolution()
-    /// has no meaning.
+    /// Too many voxels for a ray to count: it goes through windows (renderer/march/windows.h), and
+    /// resolution() has no meaning.
     [[nodiscard]] bool has_windows() const;
     /// Levels under a window's tiles that a ray can reach.
     [[nodiscard]] int levels_in_window() const;

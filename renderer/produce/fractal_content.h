@@ -9,8 +9,8 @@
 
 namespace cairn::renderer {
 
-/// A cube without one of its eight octants, and each octant that is left likewise, without end: voxel (x, y, z)
-/// of any power-of-two grid across the root cube is occupied when no bit is set in all three.
+/// A cube without one of its eight octants, and each octant that is left likewise, without end: voxel (x, y,
+/// z) of any power-of-two grid across the root cube is occupied when no bit is set in all three.
 ///
 /// Around its middle the set repeats itself, exactly, at each power of two: a trial for depth without limit.
 /// The root cube is [0, 1]^3 of the world. Dimension log2(7).
@@ -36,8 +36,8 @@ private:
     TreeShape shape_;
 };
 
-/// Fills bricks from the positions of their voxels in the tile and from which neighbours the tile has, so that
-/// 32 bits are enough at any depth.
+/// Fills bricks from the positions of their voxels in the tile and from which neighbours the tile has, so
+/// that 32 bits are enough at any depth.
 class FractalProducer final : public Producer {
 public:
     FractalProducer(const TreeShape& shape, const gl::ShaderSource& shaders);
