@@ -97,6 +97,13 @@ interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, int
     return out;
 }
 
+gl::Defines content_defines(const Content& content) {
+    gl::Defines defines;
+    if (content.has_constant()) defines.emplace_back("HAS_CONSTANT", "1");
+    if (content.has_low_frequency()) defines.emplace_back("HAS_FINAL", "1");
+    return defines;
+}
+
 }  // namespace
 
 /// In the order of the data's way: oracle and producer, pools, marcher.
@@ -106,8 +113,9 @@ struct Renderer::Parts {
         : shape(tree_shape),
           content(std::move(shown)),
           pool(shape, content->has_color(), options.brick_pool_bytes),
-          tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{})),
-          marcher(shape, content->has_color(), shaders) {}
+          tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{}),
+               content->has_constant()),
+          marcher(shape, content->has_color(), shaders, content_defines(*content)) {}
 
     void converge(const std::function<void(double)>& progress, double pixels, double pixels_before);
     void serve(std::vector<std::uint32_t> queries);
@@ -115,6 +123,12 @@ struct Renderer::Parts {
     [[nodiscard]] PassResult march(PassKind kind);
     [[nodiscard]] bool serve_until(Clock::time_point deadline, const PassResult& pass);
     void subdivide(std::uint32_t entry);
+    void request(std::uint32_t entry, bool may_stay);
+    void produce_requests();
+    /// Where only a tile's own brick tells whether anything finer would show, that comes first.
+    [[nodiscard]] bool wants_brick_first(std::uint32_t entry) const {
+        return content->has_low_frequency() && tree.wants_children(entry) && !tree.was_produced(entry);
+    }
 
     TreeShape shape;
     std::unique_ptr<Content> content;
@@ -122,14 +136,23 @@ struct Renderer::Parts {
     Tree tree;
     Marcher marcher;
     std::uint32_t round = 1;
+    std::vector<BrickRequest> requests;  // that wait to be produced together
+    std::vector<std::uint32_t> requested_entries;
     FrameStatistics statistics;
 };
 
 Renderer::Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options,
+                   const gl::ShaderSource& shaders)
+    : Renderer(
+          [&](const TreeShape& shape) {
+              return std::make_unique<SurfaceContent>(shape, flatten(scene, snapshot, shape), shaders);
+          },
+          options, shaders) {}
+
+Renderer::Renderer(const ContentMaker& make_content, const TreeOptions& options,
                    const gl::ShaderSource& shaders) {
     const TreeShape shape = make_tree_shape(options.n, options.m, options.max_resolution);
-    auto content = std::make_unique<SurfaceContent>(shape, flatten(scene, snapshot, shape), shaders);
-    parts_ = std::make_unique<Parts>(shape, std::move(content), options, shaders);
+    parts_ = std::make_unique<Parts>(shape, make_content(shape), options, shaders);
 }
 
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -144,10 +167,41 @@ void Renderer::Parts::subdivide(std::uint32_t entry) {
     const Tile tile = tree.tile(entry);
     const glm::uvec2 mask = content->oracle().child_mask(tile);
     for (int child = 0; child < shape.child_count(); ++child) {
-        if ((mask[child / 32] >> (child % 32) & 1U) == 0) continue;
-        tree.set_child_mask(*first + std::uint32_t(child),
-                            content->oracle().child_mask(child_of(tile, shape.n, child)));
+        const int bit = shape.n == 8 ? child % 8 / 2 + 4 * (child / 8 % 8 / 2) + 16 * (child / 128) : child;
+        if ((mask[bit / 32] >> (bit % 32) & 1U) == 0) continue;
+        const Tile child_tile = child_of(tile, shape.n, child);
+        const std::uint32_t child_entry = *first + std::uint32_t(child);
+        if (shape.n == 8 && content->oracle().is_empty(child_tile)) {
+            tree.set_constant(child_entry, glm::u8vec4(0));
+            tree.set_final(child_entry);
+        } else {
+            tree.set_child_mask(child_entry, content->oracle().child_mask(child_tile));
+        }
     }
+}
+
+/// Gives the tile a slot, if there is one, to be filled by produce_requests().
+void Renderer::Parts::request(std::uint32_t entry, bool may_stay) {
+    if (!tree.wants_brick(entry)) return;
+    const std::optional<int> slot = tree.add_brick(entry, may_stay);
+    if (!slot) return;
+    requests.push_back({tree.tile(entry), *slot});
+    requested_entries.push_back(entry);
+}
+
+void Renderer::Parts::produce_requests() {
+    const std::vector<Produced> found = content->producer().produce(requests, pool);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const std::uint32_t entry = requested_entries[i];
+        if (content->has_low_frequency()) tree.set_produced(entry);
+        if (found[i].low_frequency) tree.set_final(entry);
+        if (!found[i].constant) continue;
+        tree.set_constant(entry, found[i].mean);
+        ++statistics.constant_tiles;
+    }
+    statistics.bricks_produced += requests.size();
+    requests.clear();
+    requested_entries.clear();
 }
 
 /// Answers the tile queries of a pass. Bricks come first, then the deepest nodes: whatever the pools' sizes,
@@ -161,18 +215,15 @@ void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
         if (level(a) != level(b)) return level(a) > level(b);
         return a < b;
     });
-    std::vector<BrickRequest> requests;
     for (const std::uint32_t query : queries) {
         const std::uint32_t entry = query / 2;
-        if (query % 2 == QUERY_CHILDREN) {
+        if (query % 2 == QUERY_CHILDREN && !wants_brick_first(entry)) {
             subdivide(entry);
-        } else if (tree.wants_brick(entry)) {
-            if (const std::optional<int> slot = tree.add_brick(entry))
-                requests.push_back({tree.tile(entry), *slot});
+        } else {
+            request(entry, true);
         }
     }
-    content->producer().produce(requests, pool);
-    statistics.bricks_produced += requests.size();
+    produce_requests();
     statistics.tile_queries += queries.size();
     tree.upload();
 }
@@ -208,21 +259,17 @@ bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& 
         return std::tuple(b.rays, a.level, a.entry) < std::tuple(a.rays, b.level, b.entry);
     });
     const std::uint64_t before = statistics.nodes_subdivided + statistics.bricks_produced;
-    std::vector<BrickRequest> requests;
     for (std::size_t first = 0; first < questions.size(); first += batch) {
         for (std::size_t i = first; i < std::min(first + batch, questions.size()); ++i) {
             const Question& question = questions[i];
-            if (question.for_children) {
+            if (question.for_children && !wants_brick_first(question.entry)) {
                 subdivide(question.entry);
-            } else if (tree.wants_brick(question.entry)) {
-                if (const std::optional<int> slot = tree.add_brick(question.entry, !question.to_stand_in))
-                    requests.push_back({tree.tile(question.entry), *slot});
+            } else {
+                request(question.entry, !question.to_stand_in);
             }
         }
-        content->producer().produce(requests, pool);
+        produce_requests();
         glFinish();
-        statistics.bricks_produced += requests.size();
-        requests.clear();
         if (Clock::now() > deadline) break;
     }
     statistics.tile_queries += questions.size();

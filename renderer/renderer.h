@@ -71,8 +71,8 @@ struct Rows {
 
 /// The shape of the N^3-tree and the bounds of its caches (Crassin et al. 2008, section 4).
 struct TreeOptions {
-    int n = 4;                  ///< children an axis: 2 or 4
-    int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
+    int n = 4;   ///< children an axis: 2, 3, 4 or 8
+    int m = 16;  ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64; 27 or 81 with n = 3
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
@@ -93,6 +93,7 @@ struct FrameStatistics {
     std::uint64_t tile_queries = 0;  ///< misses that rays reported
     std::uint64_t nodes_subdivided = 0;
     std::uint64_t bricks_produced = 0;
+    std::uint64_t constant_tiles = 0;  ///< of those: turned out to hold one value, and keep no brick
     std::uint64_t bricks_evicted = 0;
     std::uint64_t nodes_evicted = 0;
     double march_ms = 0.0;              ///< of `milliseconds`: rays
@@ -103,6 +104,11 @@ struct FrameStatistics {
     std::size_t node_pool_bytes = 0;    ///< what the two stores take, all of it, used or not
     std::size_t brick_pool_bytes = 0;
 };
+
+class Content;
+struct TreeShape;
+/// Makes what a tree of that shape shows (renderer/produce/content.h).
+using ContentMaker = std::function<std::unique_ptr<Content>(const TreeShape&)>;
 
 /// Renders a scene through its voxel cache. Only what rays prove visible is voxelized, no finer than a pixel
 /// shows. Bricks stay in the pools from one frame to the next. Needs the context that was current at its
@@ -116,6 +122,9 @@ public:
     /// not fit.
     Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options = {},
              const gl::ShaderSource& shaders = {});
+    /// For content of any kind.
+    explicit Renderer(const ContentMaker& make_content, const TreeOptions& options = {},
+                      const gl::ShaderSource& shaders = {});
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
     Renderer(const Renderer&) = delete;

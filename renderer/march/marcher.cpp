@@ -20,11 +20,13 @@ constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY 
 
 }  // namespace
 
-Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders)
+Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders,
+                 const gl::Defines& content)
     : shaders_(shaders),
       defines_(shape.defines(has_color)),
       view_(sizeof(interop::MarchView), "view"),
       queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
+    defines_.insert(defines_.end(), content.begin(), content.end());
     (void)primary_program(PassKind::patient);
     (void)shadow_program(PassKind::patient);
 }

@@ -40,7 +40,9 @@ struct PassResult {
 /// query buffer (Crassin et al. 2008, sections 5.1 to 5.3).
 class Marcher {
 public:
-    Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders);
+    /// @param content  what the content's kind defines for shaders/march, beside what the tree's shape does
+    Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders,
+            const gl::Defines& content = {});
 
     /// Rows of a picture that are marched at once: as many as the driver's largest buffer holds ray states
     /// for.

@@ -46,7 +46,7 @@ glm::ivec3 box_of(int count, int most) {
 
 BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
     : has_color_(has_color), side_(shape.m + 2) {
-    const std::size_t blocks = std::size_t(shape.m / 4) * std::size_t(shape.m / 4) * std::size_t(shape.m / 4);
+    const auto blocks = std::size_t(shape.blocks());
     const std::size_t mask_words = blocks + (blocks + 63) / 64;
     const std::size_t texels = std::size_t(side_) * std::size_t(side_) * std::size_t(side_);
     const std::size_t slot_bytes = texels * (has_color ? 8 : 5) + mask_words * 8;

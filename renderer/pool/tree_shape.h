@@ -9,27 +9,38 @@
 
 namespace cairn::renderer {
 
-/// The parameters of an N^3-tree with M^3 bricks (Crassin et al. 2008, section 4.1). Powers of two, so that
-/// tiles lie on the voxelizer's lattice.
+/// The parameters of an N^3-tree with M^3 bricks (Crassin et al. 2008, section 4.1). Both are powers of one
+/// base, 2 or 3, so that all cells of the tree and of its bricks nest.
 struct TreeShape {
-    int n = 4;          ///< children an axis: 2 or 4
-    int m = 16;         ///< voxels of a brick an axis, border not counted: 8, 16, 32 or 64
+    int n = 4;   ///< children an axis: 2, 3, 4 or 8
+    int m = 16;  ///< voxels of a brick an axis, border not counted: 8, 16, 32 or 64; 27 or 81 where n = 3
     int max_level = 4;  ///< level of the finest tiles; the root is level 0
 
-    [[nodiscard]] int n_shift() const { return n == 4 ? 2 : 1; }
-    [[nodiscard]] int m_shift() const { return m == 8 ? 3 : m == 16 ? 4 : m == 32 ? 5 : 6; }
+    /// What n and m are powers of, which are called their shifts.
+    [[nodiscard]] int cell_base() const { return n == 3 ? 3 : 2; }
+    [[nodiscard]] int n_shift() const { return n == 8 ? 3 : n == 4 ? 2 : 1; }
+    [[nodiscard]] int m_shift() const {
+        return m == 8 || m == 27 ? 3 : m == 16 || m == 81 ? 4 : m == 32 ? 5 : 6;
+    }
     [[nodiscard]] int child_count() const { return n * n * n; }
-    /// Voxels across the root cube at a level: log2.
+    /// Voxels across the root cube at a level: log2. Not where n = 3.
     [[nodiscard]] int voxel_level(int level) const { return m_shift() + n_shift() * level; }
+    /// Tiles of a level across one that is so many levels above it.
+    [[nodiscard]] int tiles_across(int levels) const;
     /// Voxels across the root cube at the finest level.
-    [[nodiscard]] int resolution() const { return 1 << voxel_level(max_level); }
+    [[nodiscard]] int resolution() const { return m * tiles_across(max_level); }
+    /// Lattice units across a voxel of a level (voxelizer/grid.h). The tree's root is the low corner of the
+    /// lattice's root cube: all of it, unless n = 3.
+    [[nodiscard]] int voxel_side(int level) const;
+    /// Side of the cube of voxels that one word of a brick's masks tells of.
+    [[nodiscard]] int block_side() const { return n == 3 ? 3 : 4; }
+    [[nodiscard]] int blocks() const { return m / block_side() * (m / block_side()) * (m / block_side()); }
     [[nodiscard]] gl::Defines defines(bool has_color) const;
 };
 
 /// The deepest shape whose voxels do not pass `max_resolution` across the root cube.
 /// @throws Error (Fault::usage) when n, m or the resolution cannot work; says which values can.
 [[nodiscard]] TreeShape make_tree_shape(int n, int m, int max_resolution);
-
 /// A region of the regular subdivision: level 0 is the root cube, level l has n^l tiles across it.
 struct Tile {
     int level = 0;
