@@ -142,17 +142,18 @@ struct Renderer::Parts {
 };
 
 Renderer::Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options,
-                   const gl::ShaderSource& shaders)
-    : Renderer(
-          [&](const TreeShape& shape) {
-              return std::make_unique<SurfaceContent>(shape, flatten(scene, snapshot, shape), shaders);
-          },
-          options, shaders) {}
-
-Renderer::Renderer(const ContentMaker& make_content, const TreeOptions& options,
                    const gl::ShaderSource& shaders) {
-    const TreeShape shape = make_tree_shape(options.n, options.m, options.max_resolution);
-    parts_ = std::make_unique<Parts>(shape, make_content(shape), options, shaders);
+    const TreeShape shape = tree_shape_of(options);
+    auto content = std::make_unique<SurfaceContent>(shape, flatten(scene, snapshot, shape), shaders);
+    parts_ = std::make_unique<Parts>(shape, std::move(content), options, shaders);
+}
+
+Renderer::Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
+                   const gl::ShaderSource& shaders)
+    : parts_(std::make_unique<Parts>(tree_shape_of(options), std::move(content), options, shaders)) {}
+
+TreeShape tree_shape_of(const TreeOptions& options) {
+    return make_tree_shape(options.n, options.m, options.max_resolution);
 }
 
 Renderer::Renderer(Renderer&&) noexcept = default;

@@ -10,6 +10,8 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "renderer/pool/tree_shape.h"
+#include "renderer/produce/content.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 
@@ -78,6 +80,9 @@ struct TreeOptions {
     std::size_t brick_pool_bytes = 256U << 20U;
 };
 
+/// @throws Error (Fault::usage) for a shape that cannot work.
+[[nodiscard]] TreeShape tree_shape_of(const TreeOptions& options);
+
 /// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended
 /// in).
 struct Image {
@@ -105,11 +110,6 @@ struct FrameStatistics {
     std::size_t brick_pool_bytes = 0;
 };
 
-class Content;
-struct TreeShape;
-/// Makes what a tree of that shape shows (renderer/produce/content.h).
-using ContentMaker = std::function<std::unique_ptr<Content>(const TreeShape&)>;
-
 /// Renders a scene through its voxel cache. Only what rays prove visible is voxelized, no finer than a pixel
 /// shows. Bricks stay in the pools from one frame to the next. Needs the context that was current at its
 /// construction.
@@ -122,9 +122,9 @@ public:
     /// not fit.
     Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options = {},
              const gl::ShaderSource& shaders = {});
-    /// For content of any kind.
-    explicit Renderer(const ContentMaker& make_content, const TreeOptions& options = {},
-                      const gl::ShaderSource& shaders = {});
+    /// Content made for tree_shape_of(options), which must be the options here.
+    Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
+             const gl::ShaderSource& shaders = {});
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
     Renderer(const Renderer&) = delete;

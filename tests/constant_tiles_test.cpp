@@ -26,15 +26,9 @@ struct Boxed {
 };
 
 Boxed make_boxed(const TreeOptions& tree, const BoxOptions& options) {
-    BoxContent* content = nullptr;
-    Renderer renderer(
-        [&](const TreeShape& shape) {
-            auto made = std::make_unique<BoxContent>(shape, options);
-            content = made.get();
-            return made;
-        },
-        tree);
-    return {std::move(renderer), content};
+    auto made = std::make_unique<BoxContent>(tree_shape_of(tree), options);
+    BoxContent* const content = made.get();
+    return {Renderer(std::move(made), tree), content};
 }
 
 View view_of_box(double pixel_error) {
