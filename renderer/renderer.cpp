@@ -168,8 +168,7 @@ void Renderer::Parts::subdivide(std::uint32_t entry) {
     const Tile tile = tree.tile(entry);
     const glm::uvec2 mask = content->oracle().child_mask(tile);
     for (int child = 0; child < shape.child_count(); ++child) {
-        const int bit = shape.n == 8 ? child % 8 / 2 + 4 * (child / 8 % 8 / 2) + 16 * (child / 128) : child;
-        if ((mask[bit / 32] >> (bit % 32) & 1U) == 0) continue;
+        if (!may_hold(mask, shape.n, child)) continue;
         const Tile child_tile = child_of(tile, shape.n, child);
         const std::uint32_t child_entry = *first + std::uint32_t(child);
         if (shape.n == 8 && content->oracle().is_empty(child_tile)) {

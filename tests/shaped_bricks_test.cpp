@@ -186,9 +186,7 @@ TEST_P(ShapedBricks, OracleNeverCallsATileEmptyThatIsNot) {
             for (int child = 0; child < shape.child_count(); ++child) {
                 const glm::ivec3 place(child % shape.n, child / shape.n % shape.n,
                                        child / (shape.n * shape.n));
-                const glm::ivec3 group = place / 2;
-                const int bit = shape.n == 8 ? group.x + 4 * (group.y + 4 * group.z) : child;
-                const bool by_mask = (mask[bit / 32] >> (bit % 32) & 1U) != 0;
+                const bool by_mask = may_hold(mask, shape.n, child);
                 const bool by_tile = !oracle.is_empty(child_of(tile, shape.n, child));
                 if (truth.at(place)) {
                     ASSERT_TRUE(by_mask && by_tile)

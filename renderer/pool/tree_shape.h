@@ -66,6 +66,12 @@ struct TileHash {
     const glm::i64vec3 place(child % n, child / n % n, child / (n * n));
     return {tile.level + 1, tile.position * std::int64_t(n) + place};
 }
+/// Does NodeEntry.child_mask leave open that this child holds something? With n = 8 a bit stands for a group
+/// of 2^3.
+[[nodiscard]] inline bool may_hold(const glm::uvec2& child_mask, int n, int child) {
+    const int bit = n == 8 ? child % 8 / 2 + 4 * (child / 8 % 8 / 2) + 16 * (child / 64 / 2) : child;
+    return (child_mask[bit / 32] >> (bit % 32) & 1U) != 0;
+}
 [[nodiscard]] inline Tile parent_of(const Tile& tile, int n) {
     return {tile.level - 1, tile.position / std::int64_t(n)};
 }

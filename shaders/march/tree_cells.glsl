@@ -35,10 +35,10 @@
 
 #if CELL_BASE == 3
 
-// Shifts under 16, which 3^16 > 2^MAX_RESOLUTION_BITS allows.
+// Shifts under 20: 3^20 would pass 31 bits. No cell of a tree is larger than 3^13 (MAX_RESOLUTION_BITS).
 int cell_side(int shift) {
     return ((shift & 1) != 0 ? 3 : 1) * ((shift & 2) != 0 ? 9 : 1) * ((shift & 4) != 0 ? 81 : 1) *
-           ((shift & 8) != 0 ? 6561 : 1);
+           ((shift & 8) != 0 ? 6561 : 1) * ((shift & 16) != 0 ? 43046721 : 1);
 }
 // Number of the cell of that size that a voxel is in, along each axis; for -1 too. Integer quotients are slow on most
 // drivers, so a float proposes one that is off by at most one, and its remainder corrects it.
