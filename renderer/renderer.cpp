@@ -168,6 +168,12 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     return out;
 }
 
+MarchKind with_content(MarchKind kind, const Content& content) {
+    if (content.has_constant()) kind.defines.emplace_back("HAS_CONSTANT", "1");
+    if (content.has_low_frequency()) kind.defines.emplace_back("HAS_FINAL", "1");
+    return kind;
+}
+
 }  // namespace
 
 /// In the order of the data's way: oracle and producer, pools, marcher.
@@ -177,9 +183,10 @@ struct Renderer::Parts {
         : shape(tree_shape),
           content(std::move(shown)),
           pool(shape, content->channels(), options.brick_pool_bytes),
-          tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{})),
+          tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{}),
+               content->has_constant()),
           marcher(shape, content->has_color(), {options.traversal, options.block_starts}, shaders,
-                  std::move(kind)) {}
+                  with_content(std::move(kind), *content)) {}
 
     [[nodiscard]] interop::MarchView march_view_of(const View& view);
     void find_tiles_asked_for(const std::vector<std::uint32_t>& entries);
@@ -191,6 +198,12 @@ struct Renderer::Parts {
     void subdivide(std::uint32_t entry);
     [[nodiscard]] int draw_mix(const interop::MarchView& view, int row);
     void give_children(std::uint32_t entry);
+    void request(std::uint32_t entry, bool may_stay);
+    void produce_requests();
+    /// Where only a tile's own brick tells whether anything finer would show, that comes first.
+    [[nodiscard]] bool wants_brick_first(std::uint32_t entry) const {
+        return content->has_low_frequency() && tree.wants_children(entry) && !tree.was_produced(entry);
+    }
 
     TreeShape shape;
     std::unique_ptr<Content> content;
@@ -202,6 +215,8 @@ struct Renderer::Parts {
     Mix mix;
     MarchMix drawn;  ///< of `mix`, around the band that is marched
     std::uint32_t round = 1;
+    std::vector<BrickRequest> requests;  // that wait to be produced together
+    std::vector<std::uint32_t> requested_entries;
     FrameStatistics statistics;
 };
 
@@ -285,9 +300,15 @@ void Renderer::Parts::give_children(std::uint32_t entry) {
     const Tile tile = tree.tile(entry);
     const glm::uvec2 mask = content->oracle().child_mask(tile);
     for (int child = 0; child < shape.child_count(); ++child) {
-        if ((mask[child / 32] >> (child % 32) & 1U) == 0) continue;
-        tree.set_child_mask(*first + std::uint32_t(child),
-                            content->oracle().child_mask(child_of(tile, shape.n, child)));
+        if (!may_hold(mask, shape.n, child)) continue;
+        const Tile child_tile = child_of(tile, shape.n, child);
+        const std::uint32_t child_entry = *first + std::uint32_t(child);
+        if (shape.n == 8 && content->oracle().is_empty(child_tile)) {
+            tree.set_constant(child_entry, glm::u8vec4(0));
+            tree.set_final(child_entry);
+        } else {
+            tree.set_child_mask(child_entry, content->oracle().child_mask(child_tile));
+        }
     }
 }
 
@@ -328,6 +349,30 @@ void Renderer::Parts::find_tiles_asked_for(const std::vector<std::uint32_t>& ent
     });
 }
 
+/// Gives the tile a slot, if there is one, to be filled by produce_requests().
+void Renderer::Parts::request(std::uint32_t entry, bool may_stay) {
+    if (!tree.wants_brick(entry)) return;
+    const std::optional<int> slot = tree.add_brick(entry, may_stay);
+    if (!slot) return;
+    requests.push_back({tree.tile(entry), *slot});
+    requested_entries.push_back(entry);
+}
+
+void Renderer::Parts::produce_requests() {
+    const std::vector<Produced> found = content->producer().produce(requests, pool);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const std::uint32_t entry = requested_entries[i];
+        if (content->has_low_frequency()) tree.set_produced(entry);
+        if (found[i].low_frequency) tree.set_final(entry);
+        if (!found[i].constant) continue;
+        tree.set_constant(entry, found[i].mean);
+        ++statistics.constant_tiles;
+    }
+    statistics.bricks_produced += requests.size();
+    requests.clear();
+    requested_entries.clear();
+}
+
 /// Answers the tile queries of a pass. Bricks come first, then the deepest nodes: whatever the pools' sizes,
 /// the ray that is nearest to its data gets it, so every pass brings some ray forward and the frame ends.
 void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
@@ -339,21 +384,18 @@ void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
         if (level(a) != level(b)) return level(a) > level(b);
         return a < b;
     });
-    std::vector<BrickRequest> requests;
     std::vector<std::uint32_t> parents;
     for (const std::uint32_t query : queries) {
         const std::uint32_t entry = query / 2;
-        if (query % 2 == QUERY_CHILDREN) {
+        if (query % 2 == QUERY_CHILDREN && !wants_brick_first(entry)) {
             subdivide(entry);
             parents.push_back(entry);
-        } else if (tree.wants_brick(entry)) {
-            if (const std::optional<int> slot = tree.add_brick(entry))
-                requests.push_back({tree.tile(entry), *slot});
+        } else {
+            request(entry, true);
         }
     }
     find_tiles_asked_for(parents);
-    content->producer().produce(requests, pool);
-    statistics.bricks_produced += requests.size();
+    produce_requests();
     statistics.tile_queries += queries.size();
     tree.upload();
 }
@@ -394,25 +436,21 @@ bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& 
         return std::tuple(b.rays, a.level, a.entry) < std::tuple(a.rays, b.level, b.entry);
     });
     const std::uint64_t before = statistics.nodes_subdivided + statistics.bricks_produced;
-    std::vector<BrickRequest> requests;
     std::vector<std::uint32_t> parents;
     for (std::size_t first = 0; first < questions.size(); first += batch) {
         for (std::size_t i = first; i < std::min(first + batch, questions.size()); ++i) {
             const Question& question = questions[i];
-            if (question.for_children) {
+            if (question.for_children && !wants_brick_first(question.entry)) {
                 subdivide(question.entry);
                 parents.push_back(question.entry);
-            } else if (tree.wants_brick(question.entry)) {
-                if (const std::optional<int> slot = tree.add_brick(question.entry, !question.to_stand_in))
-                    requests.push_back({tree.tile(question.entry), *slot});
+            } else {
+                request(question.entry, !question.to_stand_in);
             }
         }
         find_tiles_asked_for(parents);
         parents.clear();
-        content->producer().produce(requests, pool);
+        produce_requests();
         glFinish();
-        statistics.bricks_produced += requests.size();
-        requests.clear();
         if (Clock::now() > deadline) break;
     }
     statistics.tile_queries += questions.size();

@@ -80,8 +80,8 @@ struct Rows {
 
 /// The shape of the N^3-tree and the bounds of its caches (Crassin et al. 2008, section 4).
 struct TreeOptions {
-    int n = 4;                  ///< children an axis: 2 or 4
-    int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
+    int n = 4;   ///< children an axis: 2, 3, 4 or 8
+    int m = 16;  ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64; 27 or 81 with n = 3
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
     /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest
     /// voxels are at least 2^-60 of the root cube.
@@ -114,6 +114,7 @@ struct FrameStatistics {
     std::uint64_t tile_queries = 0;  ///< misses that rays reported
     std::uint64_t nodes_subdivided = 0;
     std::uint64_t bricks_produced = 0;
+    std::uint64_t constant_tiles = 0;  ///< of those: turned out to hold one value, and keep no brick
     std::uint64_t bricks_evicted = 0;
     std::uint64_t nodes_evicted = 0;
     double march_ms = 0.0;              ///< of `milliseconds`: rays

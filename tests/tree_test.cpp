@@ -21,8 +21,8 @@ TEST(TreeShapeTest, IsTheDeepestWhoseVoxelsDoNotPassTheLimit) {
     EXPECT_EQ(make_tree_shape(4, 16, 8192).resolution(), 4096);
     EXPECT_EQ(make_tree_shape(2, 8, 8).max_level, 0);
     EXPECT_EQ(make_tree_shape(2, 8, 1 << MAX_RESOLUTION_BITS).max_level, 18);
-    for (const int n : {2, 4}) {
-        for (const int m : {8, 16, 32, 64}) {
+    for (const int n : {2, 3, 4, 8}) {
+        for (const int m : n == 3 ? std::vector{27, 81} : std::vector{8, 16, 32, 64}) {
             for (int limit = m; limit <= 1 << MAX_RESOLUTION_BITS; limit += 1 + limit / 7) {
                 const TreeShape shape = make_tree_shape(n, m, limit);
                 const auto where = fmt::format("N = {}, M = {}, limit {}", n, m, limit);
@@ -43,10 +43,11 @@ TEST(TreeShapeTest, RefusesWhatCannotWorkAndSaysWhatCan) {
         const char* hint;
     };
     for (const Wrong& wrong :
-         {Wrong{3, 16, 8192, "2 or 4"}, Wrong{0, 16, 8192, "2 or 4"}, Wrong{8, 16, 8192, "2 or 4"},
-          Wrong{4, 12, 8192, "8, 16, 32 or 64"}, Wrong{4, 4, 8192, "8, 16, 32 or 64"},
-          Wrong{4, 128, 8192, "8, 16, 32 or 64"}, Wrong{4, 16, 15, "between 16"}, Wrong{2, 8, 0, "between 8"},
-          Wrong{2, 8, -1, "between 8"}, Wrong{4, 16, (1 << MAX_RESOLUTION_BITS) + 1, "2097152"}}) {
+         {Wrong{3, 16, 8192, "27 or 81"}, Wrong{0, 16, 8192, "2, 3, 4 or 8"},
+          Wrong{8, 27, 8192, "8, 16, 32 or 64"}, Wrong{4, 12, 8192, "8, 16, 32 or 64"},
+          Wrong{4, 4, 8192, "8, 16, 32 or 64"}, Wrong{4, 128, 8192, "8, 16, 32 or 64"},
+          Wrong{4, 16, 15, "between 16"}, Wrong{2, 8, 0, "between 8"}, Wrong{2, 8, -1, "between 8"},
+          Wrong{4, 16, (1 << MAX_RESOLUTION_BITS) + 1, "2097152"}}) {
         try {
             (void)make_tree_shape(wrong.n, wrong.m, wrong.limit);
             ADD_FAILURE() << fmt::format("N = {}, M = {}, limit {} was accepted", wrong.n, wrong.m,
@@ -70,7 +71,7 @@ TEST(TreeShapeTest, EveryTileHasItsOwnHashAndItsParent) {
                     const Tile tile{level, {x, y, z}};
                     hashes.insert(TileHash{}(tile));
                     ++tiles;
-                    for (const int n : {2, 4}) {
+                    for (const int n : {2, 3, 4, 8}) {
                         for (int child = 0; child < n * n * n; ++child)
                             ASSERT_EQ(parent_of(child_of(tile, n, child), n), tile) << "N = " << n;
                     }

@@ -29,8 +29,8 @@ public:
           down_(dvec3(view.up) / -glm::dot(dvec3(view.up), dvec3(view.up))),
           half_size_(0.5 * view.size_shadow.x, 0.5 * view.size_shadow.y),
           slack_(place_margin * (root_side + glm::length(dvec3(view.eye)))),
-          count_((view.size_shadow.x + BLOCK_SIDE - 1) / BLOCK_SIDE,
-                 (view.band.y + BLOCK_SIDE - 1) / BLOCK_SIDE),
+          count_((view.size_shadow.x + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE,
+                 (view.band.y + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE),
           near_(std::size_t(count_.x) * std::size_t(count_.y), std::numeric_limits<double>::infinity()),
           far_(near_.size(), 0.0) {}
 
@@ -49,8 +49,8 @@ public:
         const double far =
             glm::length(glm::max(glm::abs(box.low - eye_), glm::abs(box.high - eye_))) * (1.0 + 1e-6) +
             2.0 * slack_;
-        for (int y = r.low.y / BLOCK_SIDE; y <= r.high.y / BLOCK_SIDE; ++y) {
-            for (int x = r.low.x / BLOCK_SIDE; x <= r.high.x / BLOCK_SIDE; ++x) {
+        for (int y = r.low.y / PIXEL_BLOCK_SIDE; y <= r.high.y / PIXEL_BLOCK_SIDE; ++y) {
+            for (int x = r.low.x / PIXEL_BLOCK_SIDE; x <= r.high.x / PIXEL_BLOCK_SIDE; ++x) {
                 const std::size_t block = std::size_t(y) * std::size_t(count_.x) + std::size_t(x);
                 near_[block] = std::min(near_[block], near);
                 far_[block] = std::max(far_[block], far);
@@ -121,8 +121,8 @@ std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, co
 namespace {
 
 int block_count(const interop::MarchView& view) {
-    const glm::ivec2 count((view.size_shadow.x + BLOCK_SIDE - 1) / BLOCK_SIDE,
-                           (view.band.y + BLOCK_SIDE - 1) / BLOCK_SIDE);
+    const glm::ivec2 count((view.size_shadow.x + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE,
+                           (view.band.y + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE);
     return count.x * count.y;
 }
 

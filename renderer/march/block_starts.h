@@ -7,7 +7,7 @@
 
 namespace cairn::renderer {
 
-/// Between which distances from the eye the rays of each block of BLOCK_SIDE^2 pixels of the band may meet
+/// Between which distances from the eye the rays of each block of PIXEL_BLOCK_SIDE^2 pixels of the band may meet
 /// anything, as far as the node pool tells: blocks that see nothing are left out, so that no ray is made for
 /// them.
 ///

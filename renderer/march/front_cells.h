@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "renderer/pool/tree.h"
+#include "shaders/interop/config.h"
 
 namespace cairn::renderer {
 
@@ -47,13 +48,15 @@ public:
         const bool goes_down =
             tile.level < shape_.max_level && voxel_side > 0.999 * cone_.width * cone_.distance_to(box);
         const bool knows_children = (node.child_mask.x | node.child_mask.y) != 0;
-        // A tile without its brick is asked for, or stood in for, as a whole.
-        if (!goes_down && (node.brick == 0 || !knows_children)) {
+        // A tile without its brick is asked for, or stood in for, as a whole; one that nothing finer adds to is
+        // shown as a whole.
+        const bool has_brick = (node.brick & NODE_SLOT) != 0;
+        if ((node.brick & NODE_FINAL) != 0 || (!goes_down && (!has_brick || !knows_children))) {
             add_(box);
             return;
         }
         for (int child = 0; child < shape_.child_count(); ++child) {
-            if ((node.child_mask[child / 32] >> (child % 32) & 1U) == 0) continue;
+            if (!may_hold(node.child_mask, shape_.n, child)) continue;
             if (goes_down && node.children != 0)
                 walk(node.children + std::uint32_t(child));
             else

@@ -192,7 +192,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
     if (old_shadow != 0) run({shadow_program(kind), true, old_shadow}, round, pool, kind);
     const std::uint32_t primary =
-        first_pass_ ? std::uint32_t(start_count_ * BLOCK_SIDE * BLOCK_SIDE) : waiting_primary_;
+        first_pass_ ? std::uint32_t(start_count_ * PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) : waiting_primary_;
     if (primary != 0) run({primary_program(kind), false, primary}, round, pool, kind);
     const bool began = first_pass_;
     first_pass_ = false;

@@ -95,8 +95,7 @@ namespace {
 std::uint32_t child_of_tile(const Tree& tree, std::uint32_t parent, int child,
                             const std::function<void(std::uint32_t)>& subdivide) {
     if (parent == WINDOW_EMPTY || (parent & WINDOW_MISSING) != 0) return parent;
-    const glm::uvec2 mask = tree.node(parent).child_mask;
-    if ((mask[child / 32] >> (child % 32) & 1U) == 0) return WINDOW_EMPTY;
+    if (!may_hold(tree.node(parent).child_mask, tree.shape().n, child)) return WINDOW_EMPTY;
     if (tree.node(parent).children == 0 && subdivide) subdivide(parent);
     const std::uint32_t children = tree.node(parent).children;
     return children == 0 ? WINDOW_MISSING | parent : children + std::uint32_t(child);

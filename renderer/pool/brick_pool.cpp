@@ -46,7 +46,7 @@ glm::ivec3 box_of(int count, int most) {
 
 BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t bytes)
     : channels_(channels), side_(shape.m + 2) {
-    const std::size_t blocks = std::size_t(shape.m / 4) * std::size_t(shape.m / 4) * std::size_t(shape.m / 4);
+    const auto blocks = std::size_t(shape.blocks());
     const std::size_t mask_words = blocks + (blocks + 63) / 64;
     const std::size_t texels = std::size_t(side_) * std::size_t(side_) * std::size_t(side_);
     const std::size_t texel_bytes = (channels.color ? 4U : 1U) + (channels.normal ? 4U : 0U);

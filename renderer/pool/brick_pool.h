@@ -26,9 +26,10 @@ struct Channels {
 ///     coverage),
 ///              or R8 coverage (of a volume: density) alone when the scene has no colour
 ///     normal   3D texture, RGB10_A2: normal times coverage, 0.5 = zero; where there are normals
-///     masks    64-bit words: which 4^3 blocks are not empty (1 word for each 64 blocks), then one word a
-///     block:
-///              which of its 4^3 voxels are occupied; bit x + 4 (y + 4 z)
+///     masks    64-bit words: which blocks of b^3 voxels are not empty (1 word for each 64 blocks), then one
+///     word a block:
+///              which of its voxels are occupied; bit x + b (y + b z). b = TreeShape::block_side(): 4, or 3
+///              where n = 3
 class BrickPool {
 public:
     /// As many slots as fit in `bytes`. @throws Error (Fault::usage) when not one does, naming the least.

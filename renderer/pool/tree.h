@@ -10,6 +10,7 @@
 #include "gl/handle.h"
 #include "renderer/pool/lru.h"
 #include "renderer/pool/tree_shape.h"
+#include "shaders/interop/config.h"
 #include "shaders/interop/types.h"
 
 namespace cairn::renderer {
@@ -23,16 +24,26 @@ namespace cairn::renderer {
 class Tree {
 public:
     /// @param root_mask    child_mask of the root tile.
+    /// @param has_means    tiles may be constant without being empty: then what they hold is kept beside the
+    /// entries.
     /// @throws Error (Fault::usage) when `node_pool_bytes` holds fewer blocks than one path from root to
     /// leaf.
-    Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes, glm::uvec2 root_mask);
+    Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes, glm::uvec2 root_mask,
+         bool has_means = false);
 
     [[nodiscard]] const TreeShape& shape() const { return shape_; }
     [[nodiscard]] const Tile& tile(std::uint32_t entry) const { return tiles_[entry]; }
     /// The mirror of an entry, as the next upload() leaves it on the GPU.
     [[nodiscard]] const interop::NodeEntry& node(std::uint32_t entry) const { return entries_[entry]; }
     [[nodiscard]] std::uint32_t entry_count() const { return std::uint32_t(entries_.size()); }
-    [[nodiscard]] std::size_t size_bytes() const { return node_buffer_.size_bytes(); }
+    /// Slot of its brick in the pool; none where it holds none.
+    [[nodiscard]] std::optional<int> slot(std::uint32_t entry) const {
+        const std::uint32_t number = entries_[entry].brick & NODE_SLOT;
+        return number != 0 ? std::optional(int(number) - 1) : std::nullopt;
+    }
+    [[nodiscard]] std::size_t size_bytes() const {
+        return node_buffer_.size_bytes() + mean_buffer_.size_bytes();
+    }
     [[nodiscard]] int bricks_resident() const { return bricks_.used_count(); }
 
     /// Starts a round; stamps what rays used in the pass before it, and their ancestors.
@@ -58,6 +69,17 @@ public:
     /// @param may_stay  counts as used in this round; else as used just before keep_since(), so that it takes
     ///                  the place of nothing that is needed now.
     [[nodiscard]] std::optional<int> add_brick(std::uint32_t entry, bool may_stay = true);
+
+    /// What a tile turned out to hold when it was produced. It stays known as long as the tile has its entry,
+    /// though the brick may go.
+    void set_produced(std::uint32_t entry) { add_flags(entry, NODE_PRODUCED); }
+    [[nodiscard]] bool was_produced(std::uint32_t entry) const {
+        return (entries_[entry].brick & NODE_PRODUCED) != 0;
+    }
+    /// Every voxel has this value, as in Produced::mean: gives its slot back, and none will be wanted again.
+    void set_constant(std::uint32_t entry, glm::u8vec4 mean);
+    /// Nothing finer adds to it: it will want no children. Not to be said of a tile that has any.
+    void set_final(std::uint32_t entry) { add_flags(entry, NODE_FINAL); }
 
     /// Sends what changed to the GPU.
     void upload();
@@ -91,6 +113,11 @@ private:
     [[nodiscard]] int take_block();
     [[nodiscard]] bool can_evict_block(int block) const;
     void evict_brick(int slot);
+    void release_slot(int slot);
+    void add_flags(std::uint32_t entry, std::uint32_t flags) {
+        entries_[entry].brick |= flags;
+        mark_dirty(entry);
+    }
     void gather_old_block(int block);
     void evict_block(int block);
     void pin_path(std::uint32_t entry);
@@ -113,8 +140,11 @@ private:
     std::vector<std::pair<std::uint32_t, int>> old_blocks_;
     bool blocks_gathered_ = false;
     std::vector<std::uint32_t> dirty_;
+    std::vector<std::uint32_t> means_;  // of each entry, RGBA8; empty without them
     gl::Buffer node_buffer_;
     gl::TextureHandle node_texture_;
+    gl::Buffer mean_buffer_;
+    gl::TextureHandle mean_texture_;
     Counters counters_;
 };
 

@@ -1,5 +1,7 @@
 #include "renderer/pool/tree_shape.h"
 
+#include <bit>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -18,8 +20,20 @@ gl::Defines TreeShape::defines(bool has_color) const {
             {"HAS_COLOR", has_color ? "1" : "0"}};
 }
 
+int TreeShape::tiles_across(int levels) const {
+    int across = 1;
+    for (int level = 0; level < levels; ++level)
+        across *= n;
+    return across;
+}
+
+int TreeShape::voxel_side(int level) const {
+    const auto finest = std::bit_ceil(unsigned(resolution()));
+    return int((1U << unsigned(LATTICE_BITS)) / finest) * tiles_across(max_level - level);
+}
+
 bool TreeShape::has_windows() const {
-    return voxel_level(max_level) > MAX_RESOLUTION_BITS;
+    return cell_base() == 2 && voxel_level(max_level) > MAX_RESOLUTION_BITS;
 }
 
 int TreeShape::levels_in_window() const {
@@ -29,9 +43,16 @@ int TreeShape::levels_in_window() const {
 namespace {
 
 void check_factors(int n, int m) {
-    if (n != 2 && n != 4) throw Error(Fault::usage, "tree", fmt::format("N = {} is not 2 or 4", n));
-    if (m != 8 && m != 16 && m != 32 && m != 64) {
-        throw Error(Fault::usage, "tree", fmt::format("M = {} is not 8, 16, 32 or 64", m));
+    if (n != 2 && n != 3 && n != 4 && n != 8) {
+        throw Error(Fault::usage, "tree", fmt::format("N = {} is not 2, 3, 4 or 8", n));
+    }
+    if (n == 3 && m != 27 && m != 81) {
+        throw Error(Fault::usage, "tree", fmt::format("M = {} is not 27 or 81", m),
+                    "with N = 3, bricks are cut in thirds too; M = 8, 16, 32 and 64 go with N = 2, 4 and 8");
+    }
+    if (n != 3 && m != 8 && m != 16 && m != 32 && m != 64) {
+        throw Error(Fault::usage, "tree", fmt::format("M = {} is not 8, 16, 32 or 64", m),
+                    "M = 27 and 81 go with N = 3");
     }
 }
 

@@ -27,6 +27,12 @@ public:
     [[nodiscard]] virtual bool has_color() const = 0;
     [[nodiscard]] virtual Channels channels() const { return {.color = has_color()}; }
     [[nodiscard]] virtual glm::vec3 uniform_color() const = 0;
+    /// May the producer find tiles constant and not empty? Then the tree keeps their values, and rays march
+    /// them.
+    [[nodiscard]] virtual bool has_constant() const { return false; }
+    /// May it find that nothing finer adds to a tile (Produced::low_frequency)? Then each tile is produced
+    /// before it is subdivided, so that what a ray sees does not depend on what was looked at before.
+    [[nodiscard]] virtual bool has_low_frequency() const { return false; }
 };
 
 }  // namespace cairn::renderer

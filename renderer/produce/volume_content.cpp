@@ -42,7 +42,9 @@ public:
         std::transform(values.begin(), values.end(), texels_, stored);
     }
 
-    [[nodiscard]] Produced analyse() const {
+    /// Densities that are alike and not seen are as good as nothing. The density 0, where it is seen, cannot
+    /// be told from that, and keeps its brick.
+    [[nodiscard]] Produced analyse(const DensityTest& test) const {
         const auto [low, high] = std::minmax_element(texels_, texels_ + count());
         std::uint64_t sum = 0;
         const int m = side_ - 2;
@@ -52,7 +54,9 @@ public:
                     sum += texels_[at(x, y, z)];
         const auto voxels = std::uint64_t(m) * std::uint64_t(m) * std::uint64_t(m);
         const auto mean = std::uint8_t((sum + voxels / 2) / voxels);
-        return {*low == *high, glm::u8vec4(mean, 0, 0, 0)};
+        const bool shows = test.shows(*low, *high);
+        const bool alike = *low == *high && !(shows && *low == 0);
+        return {.constant = alike, .mean = glm::u8vec4(shows ? mean : 0, 0, 0, 0)};
     }
 
     /// Summary words, then a word a block (shaders/pool/brick_masks.glsl).
@@ -65,7 +69,8 @@ public:
             high = spread(high, step, [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
         }
         const int m = side_ - 2;
-        const int blocks = m / 4;
+        const int side = m % 3 == 0 ? 3 : 4;  // of a block: where n = 3, bricks are cut in thirds
+        const int blocks = m / side;
         const int block_count = blocks * blocks * blocks;
         const int summaries = (block_count + 63) / 64;
         std::fill_n(words, summaries + block_count, 0);
@@ -74,8 +79,8 @@ public:
                 for (int x = 0; x < m; ++x) {
                     const std::size_t voxel = at(x + 1, y + 1, z + 1);
                     if (!test.shows(low[voxel], high[voxel])) continue;
-                    const int block = x / 4 + blocks * (y / 4 + blocks * (z / 4));
-                    const int bit = x % 4 + 4 * (y % 4 + 4 * (z % 4));
+                    const int block = x / side + blocks * (y / side + blocks * (z / side));
+                    const int bit = x % side + side * (y % side + side * (z % side));
                     words[summaries + block] |= std::uint64_t(1) << unsigned(bit);
                     words[block / 64] |= std::uint64_t(1) << unsigned(block % 64);
                 }
@@ -138,15 +143,20 @@ glm::uvec2 VolumeOracle::child_mask(const Tile& tile) {
     glm::uvec2 mask(0);
     const TreeShape& tree = shape_.tree;
     if (tile.level >= tree.max_level) return mask;
-    const std::int64_t voxel = power(tree.n, shape_.coarseness(tile.level + 1));
-    const std::int64_t side = voxel * tree.m;
     for (int child = 0; child < tree.child_count(); ++child) {
-        // With a voxel around it: fetches near its sides mix that in. Finer levels mix in less.
-        const glm::i64vec3 low = child_of(tile, tree.n, child).position * side;
-        const FieldRange range = field_.range(low - voxel, low + side + voxel);
-        if (test_.shows(stored(range.low), stored(range.high))) mask[child / 32] |= 1U << (child % 32);
+        const int bit = mask_bit(tree.n, child);
+        if (!is_empty(child_of(tile, tree.n, child))) mask[bit / 32] |= 1U << (bit % 32);
     }
     return mask;
+}
+
+bool VolumeOracle::is_empty(const Tile& tile) {
+    const std::int64_t voxel = power(shape_.tree.n, shape_.coarseness(tile.level));
+    const std::int64_t side = voxel * shape_.tree.m;
+    // With a voxel around it: fetches near its sides mix that in. Finer levels mix in less.
+    const glm::i64vec3 low = tile.position * side;
+    const FieldRange range = field_.range(low - voxel, low + side + voxel);
+    return !test_.shows(stored(range.low), stored(range.high));
 }
 
 VolumeProducer::VolumeProducer(const VolumeShape& shape, const Field& field, const DensityTest& test)
@@ -180,7 +190,7 @@ void VolumeProducer::produce_batch(std::span<const BrickRequest> requests, const
         brick.fill(field_, shape_.coarseness(tile.level),
                    tile.position * std::int64_t(tree.m) - std::int64_t(1));
         brick.write_masks(test_, masks_.data() + i * words);
-        produced[i] = brick.analyse();
+        produced[i] = brick.analyse(test_);
     });
     upload_.write(0, texels_.data(), texels_.size());
     for (std::size_t i = 0; i < requests.size(); ++i)

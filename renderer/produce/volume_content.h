@@ -48,6 +48,7 @@ public:
     /// Refers to the field and the test, which must outlive it.
     VolumeOracle(const VolumeShape& shape, const Field& field, const DensityTest& test);
     [[nodiscard]] glm::uvec2 child_mask(const Tile& tile) override;
+    [[nodiscard]] bool is_empty(const Tile& tile) override;
 
 private:
     VolumeShape shape_;
@@ -90,6 +91,7 @@ public:
     [[nodiscard]] bool has_color() const override { return false; }
     [[nodiscard]] Channels channels() const override { return {.color = false, .normal = false}; }
     [[nodiscard]] glm::vec3 uniform_color() const override { return glm::vec3(1.0F); }
+    [[nodiscard]] bool has_constant() const override { return true; }
 
 private:
     std::shared_ptr<const Field> field_;

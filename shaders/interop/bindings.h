@@ -39,6 +39,7 @@
 #define SSBO_BRICK_TILES 6    // BrickTile: the tiles of the batch
 #define SSBO_BRICK_SCRATCH 7  // masks, then sums, of every voxel of the batch (scratch.glsl)
 #define SSBO_BRICK_MASKS 0    // masks and summaries of the brick pool (resolve passes, which read no surface)
+#define SSBO_BRICK_FOUND 1    // a word a tile of the batch: not 0 where any of its voxels is occupied (the same passes)
 #define IMAGE_BRICK_COLOR 0
 #define IMAGE_BRICK_NORMAL 1
 
@@ -55,6 +56,7 @@
 #define TEXTURE_BRICK_MASKS 1
 #define TEXTURE_BRICK_COLOR 2   // or coverage alone
 #define TEXTURE_BRICK_NORMAL 3
+#define TEXTURE_NODE_MEANS 5    // RGBA8 in a uint, a node entry: what constant tiles hold
 #define TEXTURE_SHADOW_ENDS 4
 #define TEXTURE_MESH_NEAREST 8   // R32F a pixel: distance of the nearest mesh, MESH_MISS where there is none
 #define TEXTURE_MESH_SURFACE 9   // RGBA32UI a pixel: what is there (shaders/mesh/mesh_surface.glsl)

@@ -82,6 +82,13 @@
 #define MATERIAL_WRAP_T_SHIFT 2
 #define MATERIAL_MASK_BIT 16     // alpha-masked: texels under the cutoff are holes
 
+// NodeEntry.brick: the slot + 1, and what is known of the tile.
+#define NODE_SLOT 0x00FFFFFFu
+#define NODE_PRODUCED 0x10000000u  // it has been produced, and the flags below tell what it turned out to be
+#define NODE_FINAL 0x20000000u     // nothing finer adds to it: it has no children
+#define NODE_EMPTY 0x40000000u     // constant, and the value is 0
+#define NODE_CONSTANT 0x80000000u  // one value is all that it holds at its own level: it has no brick
+
 // The tile queries of one pass; what finds no room is asked for again by the next pass.
 #define QUERY_CAPACITY 65536
 #define QUERY_COUNTS 65536  // counts of the rays that ask, behind the queries; a query's is number query % QUERY_COUNTS
@@ -111,8 +118,8 @@
 #define TRAVERSAL_STACKLESS 1
 #define TRAVERSAL_MINI_STACK 2
 
-// Rays of a block of BLOCK_SIDE^2 pixels start together (renderer/march/block_starts.h).
-#define BLOCK_SIDE 8
+// Rays of a block of PIXEL_BLOCK_SIDE^2 pixels start together (renderer/march/block_starts.h).
+#define PIXEL_BLOCK_SIDE 8
 
 // Ends of shadow rays to a directional light: a grid across its direction (renderer/march/shadow_ends.h).
 #define SHADOW_ENDS_SIDE 128

@@ -74,16 +74,18 @@ struct DeformHeader {
 };
 
 // One tile in the node pool (Crassin et al. 2008, section 4.2). A tile that is empty has no entry: its bit in the
-// parent's mask is 0.
+// parent's mask is 0. With N = 8 a bit stands for a group of 2^3 children, bit x + 4 (y + 4 z), and a child that is empty
+// in a group that is not is told by its own entry.
 struct NodeEntry {
     uvec2 child_mask;  // bit x + N (y + N z): child (x, y, z) is not empty
     uint children;     // number of the first child's entry; 0 = leaf
-    uint brick;        // slot + 1; 0 = no brick (not valid)
+    uint brick;        // NODE_SLOT: slot + 1, 0 = no brick; the other bits are flags (config.h)
 };
 
 // A tile whose brick is being produced, and a triangle that may touch it.
 struct BrickTile {
-    ivec4 low_shift;   // xyz: low corner, in voxels of the tile's level, without the border; w: log2 of a voxel's side
+    ivec4 low_size;    // xyz: low corner, in voxels of the tile's level, without the border; w: log2 of a voxel's side
+                       // in lattice units; the side itself where N = 3
     ivec4 slot_texel;  // xyz: first texel of the slot in the pool's textures (border included); w: slot
 };
 // A tile of the fractal (renderer/produce/fractal_content.h) whose brick is being produced.
@@ -139,7 +141,7 @@ struct RayState {
     uvec4 voxel_t_weight;  // xy: packed voxel; z, w: bits of floats: distance; the greatest weight, or the light's visibility
 };
 
-// A block of BLOCK_SIDE^2 pixels, and where its rays may meet anything.
+// A block of PIXEL_BLOCK_SIDE^2 pixels, and where its rays may meet anything.
 struct BlockStart {
     uint block;            // number in the band, row after row
     float near;            // distances from the eye

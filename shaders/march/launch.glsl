@@ -26,10 +26,10 @@ bool find_pixel(out Launch launch) {
     launch = Launch(ivec2(0), 0u, BlockStart(0u, 0.0, 1e30));
     if (i >= ray_count) return false;
     if (first_pass) {
-        const int blocks = (view.size_shadow.x + BLOCK_SIDE - 1) / BLOCK_SIDE;
-        launch.start = block_starts[i / uint(BLOCK_SIDE * BLOCK_SIDE)];
+        const int blocks = (view.size_shadow.x + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE;
+        launch.start = block_starts[i / uint(PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE)];
         const int block = int(launch.start.block);
-        launch.pixel = ivec2(block % blocks, block / blocks) * BLOCK_SIDE + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
+        launch.pixel = ivec2(block % blocks, block / blocks) * PIXEL_BLOCK_SIDE + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
         if (launch.pixel.x >= view.size_shadow.x || launch.pixel.y >= view.band.y) return false;
     } else {
         const int p = int(lists[list_in + i]);

@@ -7,6 +7,9 @@
 // With PROGRESSIVE, for frames that must not take long, rays also ask for the bricks of the nodes that they pass, without
 // waiting for them; and when time is up (stand_in), what is missing is shown by the nearest ancestor that has a brick.
 //
+// With HAS_CONSTANT, tiles may hold one value that is not 0 (Crassin et al. 2008, section 4.2): the includer supplies
+// visit_constant() too. With HAS_FINAL, tiles may have nothing finer to show.
+//
 // Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth, or with WINDOWS that under a window's tiles), HAS_COLOR,
 // PROGRESSIVE and TRAVERSAL; WINDOWS for trees whose voxels a ray cannot count (windows.glsl); and of the includer
 // RAYS_WIDEN: whether cone_slope is other than 0.
@@ -41,9 +44,41 @@ struct Sample {
 // Takes one occupied voxel; false stops the ray.
 bool visit(inout Ray ray, Sample s);
 
+#if HAS_CONSTANT
+// A tile of one value that a ray crosses, as so many voxels that are all alike.
+struct ConstantRun {
+    vec4 mean;        // as the texels of brick_color
+    float t_in;       // distance where the ray enters it
+    float t_out;      // and where it leaves it, or ends
+    int voxel_shift;  // log2 of a voxel's side
+    int voxels;       // that the ray crosses; at most 3 BRICK_M - 2
+};
+
+// Takes it; false stops the ray. `entered` is the ray as it comes into the tile.
+bool visit_constant(Ray entered, ConstantRun run);
+#endif
+
 #include "march/queries.glsl"
 #include "march/descend.glsl"
 #include "march/skim.glsl"
+
+#if HAS_CONSTANT
+// Through a tile of one value; false when the ray is done.
+bool cross_constant(inout Ray ray, Place place, inout int turns) {
+    const Ray entered = ray;
+    ConstantRun run;
+    run.mean = unpackUnorm4x8(texelFetch(node_means, int(place.entry)).x);
+    run.t_in = ray.t;
+    run.voxel_shift = voxel_shift_of(place);
+    const bool goes_on = step_over(ray, place.tile_shift);
+    run.t_out = min(ray.t, ray.t_end);
+    // A step from voxel to voxel changes one coordinate by one.
+    const ivec3 steps = abs(cell_of(ray.voxel, run.voxel_shift) - cell_of(entered.voxel, run.voxel_shift));
+    run.voxels = min(steps.x + steps.y + steps.z, 3 * BRICK_M);
+    turns += run.voxels;
+    return visit_constant(entered, run) && (goes_on || leave_window(ray));
+}
+#endif
 
 #define SEEK_OCCUPIED 0
 #define SEEK_DONE 1
@@ -61,6 +96,12 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
             turns += MAX_LEVEL + 1;
             const int descent = descend(ray, place, empty_shift);
             if (descent == DESCENT_MISSING) return SEEK_MISSING;
+#if HAS_CONSTANT
+            if (descent == DESCENT_CONSTANT) {
+                if (!cross_constant(ray, place, turns)) return SEEK_DONE;
+                continue;
+            }
+#endif
         }
         if (place.slot < 0) {
             if (!step_over(ray, empty_shift) && !leave_window(ray)) return SEEK_DONE;
@@ -83,6 +124,9 @@ int march(inout Ray ray) {
     place.tile_shift = ROOT_SHIFT;
 #if PROGRESSIVE
     place.brick_shift = ROOT_SHIFT;
+#endif
+#if HAS_CONSTANT
+    place.entry = 0u;
 #endif
     place.summary = uvec2(0u);
     int turns = 0;

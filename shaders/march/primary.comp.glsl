@@ -8,6 +8,9 @@
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES WITH_PROXY
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=2 WITH_PROXY
+// defines: TREE_N=3 BRICK_M=27 MAX_LEVEL=5 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=2
+// defines: TREE_N=8 BRICK_M=16 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=1 HAS_CONSTANT=1 HAS_FINAL=1
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=8 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2 HAS_CONSTANT=1
 #define RAYS_WIDEN 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
@@ -17,7 +20,7 @@
 
 #include "march/launch.glsl"
 
-layout(local_size_x = BLOCK_SIDE * BLOCK_SIDE) in;
+layout(local_size_x = PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) in;
 
 uniform uint list_out;
 uniform uint shadow_list;
@@ -54,6 +57,34 @@ bool visit(inout Ray ray, Sample s) {
     state.color.a = left;
     return state.color.a > OPAQUE_TRANSMITTANCE;
 }
+
+#if HAS_CONSTANT
+// Voxel by voxel, as if they stood in a brick, without a normal.
+bool visit_constant(Ray entered, ConstantRun run) {
+#if HAS_COLOR
+    vec3 color = run.mean.rgb / max(run.mean.a, 1.0 / 512.0);
+    color *= color;
+    const float coverage = run.mean.a;
+#else
+    const vec3 color = view.surface_color.rgb;
+    const float coverage = run.mean.r;
+#endif
+    for (int voxel = 0; voxel < run.voxels && state.color.a > OPAQUE_TRANSMITTANCE; ++voxel) {
+        const float t_in = entered.t;
+        const bool goes_on = step_over(entered, run.voxel_shift);
+        const float left = behind(state.color.a, coverage);
+        const float weight = state.color.a - left;
+        state.color.rgb += weight * color;
+        if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
+            state.voxel_t_weight.w = floatBitsToUint(weight);
+            state.normal_depth.w = 0.5 * (t_in + entered.t);
+        }
+        state.color.a = left;
+        if (!goes_on) break;
+    }
+    return state.color.a > OPAQUE_TRANSMITTANCE;
+}
+#endif
 
 // Is there light to be stopped on its way to this point?
 bool needs_shadow_ray(PixelRay seen) {

@@ -7,6 +7,8 @@
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=0 WINDOWS=1
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2 WITH_MESHES
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=3 BRICK_M=81 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2
+// defines: TREE_N=8 BRICK_M=16 MAX_LEVEL=3 HAS_COLOR=1 PROGRESSIVE=1 TRAVERSAL=2 HAS_CONSTANT=1 HAS_FINAL=1
 #define RAYS_WIDEN 0
 #include "march/march.glsl"
 #include "march/shade.glsl"
@@ -31,27 +33,50 @@ float receiver_rise;  // of the ray over that plane, for each unit of its length
 #define OWN_HEIGHT 1.75  // in voxels
 float own_reach_of(float side) { return side * clamp(2.5 / receiver_rise, 8.0, 64.0); }
 
-bool visit(inout Ray ray, Sample s) {
+// Is this voxel the receiver's own?
+bool is_own(Ray ray, vec3 centre, float t, float side) {
     float height = own_height;
     float reach = own_reach;
 #if WINDOWS
     const float scale = ldexp(1.0, N_SHIFT * (seen_window - ray.window));  // of the receiver's voxels in the ray's
     height *= scale;
     reach *= scale;
-    const vec3 from_receiver = s.centre - ray.origin;
+    const vec3 from_receiver = centre - ray.origin;
 #else
-    const vec3 from_receiver = s.centre - receiver;
+    const vec3 from_receiver = centre - receiver;
 #endif
 #if PROGRESSIVE
     if (stand_in && own_reach > 0.0) {  // its own voxels may be larger than they should be
-        height = max(height, OWN_HEIGHT * s.side);
-        reach = max(reach, own_reach_of(s.side));
+        height = max(height, OWN_HEIGHT * side);
+        reach = max(reach, own_reach_of(side));
     }
 #endif
-    const bool own = s.t < reach && dot(from_receiver, receiver_normal) < height;
-    if (!own) visibility = behind(visibility, coverage_of(s));
+    return t < reach && dot(from_receiver, receiver_normal) < height;
+}
+
+bool visit(inout Ray ray, Sample s) {
+    if (!is_own(ray, s.centre, s.t, s.side)) visibility = behind(visibility, coverage_of(s));
     return visibility > OPAQUE_TRANSMITTANCE;
 }
+
+#if HAS_CONSTANT
+bool visit_constant(Ray entered, ConstantRun run) {
+#if HAS_COLOR
+    const float coverage = run.mean.a;
+#else
+    const float coverage = run.mean.r;
+#endif
+    const float side = float(cell_side(run.voxel_shift));
+    for (int voxel = 0; voxel < run.voxels && visibility > OPAQUE_TRANSMITTANCE; ++voxel) {
+        const float t_in = entered.t;
+        const vec3 centre = vec3(cell_low(entered.voxel, run.voxel_shift)) + 0.5 * side;
+        const bool goes_on = step_over(entered, run.voxel_shift);
+        if (!is_own(entered, centre, 0.5 * (t_in + entered.t), side)) visibility = behind(visibility, coverage);
+        if (!goes_on) break;
+    }
+    return visibility > OPAQUE_TRANSMITTANCE;
+}
+#endif
 
 // Distance behind which nothing stands between the receiver and a directional light.
 float end_of_occluders(vec3 to_light) {
@@ -64,7 +89,7 @@ float end_of_occluders(vec3 to_light) {
 
 // Side of the voxels that a cone of this width is shown with (see march()).
 float voxel_side(float width) {
-    float side = float(ROOT_SIDE >> M_SHIFT);
+    float side = float(ROOT_SIDE / BRICK_M);
     for (int level = 0; level < MAX_LEVEL && side > width; ++level) side /= float(TREE_N);
     return side;
 }

@@ -1,6 +1,6 @@
 // One thread is one waiting primary ray through a volume.
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 VOLUME_STEPS=2
-// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=1 VOLUME_STEPS=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=1 VOLUME_STEPS=1 HAS_CONSTANT=1
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=0 VOLUME_STEPS=16
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 VOLUME_STEPS=1 WITH_MESHES WITH_PROXY
 #define RAYS_WIDEN 1
@@ -15,7 +15,7 @@
 
 #include "march/launch.glsl"
 
-layout(local_size_x = BLOCK_SIDE * BLOCK_SIDE) in;
+layout(local_size_x = PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) in;
 
 uniform uint list_out;
 uniform uint shadow_list;
@@ -52,15 +52,15 @@ float gather(vec4 optics, float world_length, Lit lit) {
 // Where the pixel's shadow ray will start: at the depth behind which less than half of what is seen lies. It passes through
 // voxels evenly, so a surface is not shadowed in steps. Where more than half is let through, the voxel that weighs most.
 #define HALF_PASSED 2.0  // weighs more than any voxel
-void note_depth(Ray ray, Sample s, float weight) {
+void note_depth(float t_in, float t_out, float weight) {
     const float after = state.color.a;
     const float before = after + weight;
     if (before > 0.5 && after <= 0.5) {
         const float share = log(2.0 * before) / max(log(before / max(after, 1e-9)), 1e-6);
-        state.normal_depth.w = mix(2.0 * s.t - ray.t, ray.t, clamp(share, 0.0, 1.0));
+        state.normal_depth.w = mix(t_in, t_out, clamp(share, 0.0, 1.0));
         state.voxel_t_weight.w = floatBitsToUint(HALF_PASSED);
     } else if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
-        state.normal_depth.w = s.t;
+        state.normal_depth.w = 0.5 * (t_in + t_out);
         state.voxel_t_weight.w = floatBitsToUint(weight);
     }
 }
@@ -81,9 +81,19 @@ bool visit(inout Ray ray, Sample s) {
         weight += gather(optics, chord.step * volume.voxel_size, lit);
         before = behind_it;
     }
-    note_depth(ray, s, weight);
+    note_depth(2.0 * s.t - ray.t, ray.t, weight);
     return state.color.a > OPAQUE_TRANSMITTANCE;
 }
+
+#if HAS_CONSTANT
+bool visit_constant(Ray entered, ConstantRun run) {
+    const Lit lit = light_at(entered, 0.5 * (run.t_in + run.t_out), vec3(0.0));
+    const vec4 optics = mean_optics(run.mean.r, run.mean.r);
+    const float weight = gather(optics, max(run.t_out - run.t_in, 0.0) * volume.voxel_size, lit);
+    note_depth(run.t_in, run.t_out, weight);
+    return state.color.a > OPAQUE_TRANSMITTANCE;
+}
+#endif
 
 void main() {
     Launch launch;

@@ -1,6 +1,6 @@
 // One thread is one waiting shadow ray: from where a primary ray gathered most in a volume, to the light.
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2 VOLUME_STEPS=2
-// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=1 VOLUME_STEPS=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=1 VOLUME_STEPS=1 HAS_CONSTANT=1
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=0 VOLUME_STEPS=16
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2 VOLUME_STEPS=1 WITH_MESHES
 #define RAYS_WIDEN 0
@@ -31,6 +31,14 @@ bool visit(inout Ray ray, Sample s) {
     visibility *= exp(-thickness * chord.step * volume.voxel_size);
     return visibility > OPAQUE_TRANSMITTANCE;
 }
+
+#if HAS_CONSTANT
+bool visit_constant(Ray entered, ConstantRun run) {
+    const float thickness = mean_optics(run.mean.r, run.mean.r).a;
+    visibility *= exp(-thickness * max(run.t_out - run.t_in, 0.0) * volume.voxel_size);
+    return visibility > OPAQUE_TRANSMITTANCE;
+}
+#endif
 
 // Side of the voxels that a cone of this width is shown with (descend()).
 float side_shown(float width) {
