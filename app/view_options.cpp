@@ -167,8 +167,8 @@ void add_view_options(CLI::App& verb, ViewOptions& options) {
     add_parsed_option(
         verb, "--transfer", "NAME|POINTS",
         fmt::format(
-            "what the densities of a volume look like: {};\nor points DENSITY:R,G,B:EXTINCTION with \";\" "
-            "between them,\nall in [0, 1] but the extinction, which is for each voxel\n(default: {})",
+            "what the densities of a volume look like:\n{}; or points\nDENSITY:R,G,B:EXTINCTION with \";\" "
+            "between them, all in\n[0, 1] but the extinction, which is for each voxel\n(default: {})",
             transfer_names(), default_transfer),
         [&options](const std::string& text) { options.transfer = parse_transfer(text); });
     add_parsed_option(

@@ -1,5 +1,6 @@
 // Readers of volume files: what they read, and what they refuse.
-#include <bit>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -38,6 +39,11 @@ std::string bytes_of(T value, bool big = false) {
     return bytes;
 }
 
+/// With another file for the samples.
+std::string elsewhere(const std::string& header, const std::string& file) {
+    return fmt::format("{}{}\n", header.substr(0, header.find("LOCAL")), file);
+}
+
 std::string metaimage(const std::string& size, const std::string& type, const std::string& data,
                       const std::string& more = "") {
     return fmt::format(
@@ -60,11 +66,14 @@ struct Nifti {
         put<float>(76, 1.0F);
         put<std::int16_t>(70, std::int16_t(type));
         put<float>(108, 352.0F);
-        bytes.replace(344, 4, std::string("n+1\0", 4));
+        put<char>(344, 'n');
+        put<char>(345, '+');
+        put<char>(346, '1');
     }
     template <typename T>
     void put(std::size_t at, T value) {
-        bytes.replace(at, sizeof(T), bytes_of(value, big));
+        const std::string encoded = bytes_of(value, big);
+        std::copy(encoded.begin(), encoded.end(), bytes.begin() + std::ptrdiff_t(at));
     }
 };
 
@@ -199,12 +208,10 @@ TEST_F(VolumeFiles, WhatIsNotFollowedIsWarnedOf) {
 
 TEST_F(VolumeFiles, DataInAFileBesideTheHeaderIsRead) {
     write("a.raw", "skip\x01\x02");
-    std::string header = metaimage("2 1 1", "MET_UCHAR", "", "HeaderSize = -1\n");
-    header.replace(header.find("LOCAL"), 5, "a.raw");
+    const std::string header = elsewhere(metaimage("2 1 1", "MET_UCHAR", "", "HeaderSize = -1\n"), "a.raw");
     EXPECT_EQ(read("a.mhd", header).samples, (std::vector<std::uint16_t>{257, 514}));
     for (const std::string other : {"../a.raw", "/a.raw", "b%03d.raw", "LIST", ""}) {
-        std::string bad = metaimage("2 1 1", "MET_UCHAR", "");
-        bad.replace(bad.find("LOCAL"), 5, other);
+        const std::string bad = elsewhere(metaimage("2 1 1", "MET_UCHAR", ""), other);
         EXPECT_THROW((void)read("b.mhd", bad), Error) << other;
     }
 }
@@ -235,7 +242,7 @@ TEST_F(VolumeFiles, DamagedOnesAreRefusedWithTheReason) {
     expect_refused("a.nii", "", "holds 0 bytes");
     expect_refused("a.nii", std::string(400, '\0'), "number of dimensions");
     Nifti pair({1, 1, 1}, 2);
-    pair.bytes.replace(344, 3, "ni1");
+    pair.bytes[345] = 'i';
     expect_refused("a.nii", pair.bytes, "one file");
     expect_refused("a.nii", Nifti({1, 1, 1}, 128).bytes + "123", "data type 128");
     expect_refused("a.nii", Nifti({-3, 1, 1}, 2).bytes, "samples along axis");
