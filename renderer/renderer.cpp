@@ -322,6 +322,7 @@ interop::MarchView Renderer::Parts::march_view_of(const View& view) {
     const Place eye = place_of(view, view.camera.eye, grid);
     const Place light = place_of(view, view.light.position, grid);
     windows = windows_around(shape, eye);
+    drop_empty(windows, shape, content->oracle());
     const interop::MarchView marched =
         march_view(view, in_window(view, grid, shape, windows.back()), shape.n);
     marched_windows =

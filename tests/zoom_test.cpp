@@ -233,6 +233,24 @@ TEST(Windows, NestAndHoldTheEyeWithHalfATileAroundIt) {
     }
 }
 
+TEST(Windows, EmptyOnesAroundTheEyeAreLeftOut) {
+    const renderer::TreeShape shape = renderer::make_deep_tree_shape(2, 16, 54);
+    renderer::FractalOracle oracle(shape);
+    // In the middle of the empty octant of a tile of level 10, a quarter of its side from what is not empty.
+    const renderer::Place eye{{10, glm::i64vec3(0)}, glm::dvec3(0.75)};
+    auto windows = renderer::windows_around(shape, eye);
+    EXPECT_EQ(windows.front().level, 54 - shape.levels_in_window());
+    renderer::drop_empty(windows, shape, oracle);
+    EXPECT_EQ(windows.front().level, 11);
+    EXPECT_EQ(windows.back().level, 0);
+    // On the set, none is.
+    const renderer::Place touching{{10, glm::i64vec3(0)}, glm::dvec3(0.25)};
+    auto all = renderer::windows_around(shape, touching);
+    const std::size_t count = all.size();
+    renderer::drop_empty(all, shape, oracle);
+    EXPECT_EQ(all.size(), count);
+}
+
 TEST_F(GlTest, ImpossibleDepthsAndAnchorsAreRefused) {
     TreeOptions options;
     options.max_level = 29;

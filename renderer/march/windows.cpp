@@ -55,6 +55,30 @@ std::vector<Window> windows_around(const TreeShape& shape, const Place& eye) {
     return windows;
 }
 
+void drop_empty(std::vector<Window>& windows, const TreeShape& shape, Oracle& oracle) {
+    // Tiles of the window before that are not empty; the last window is kept.
+    std::vector<Tile> full = {Tile{}};
+    for (std::size_t i = windows.size() - 1; i-- > 0;) {
+        std::vector<Tile> inner;
+        for (const Tile& parent : full) {
+            const glm::uvec2 mask = oracle.child_mask(parent);
+            for (int child = 0; child < shape.child_count(); ++child) {
+                if ((mask[child / 32] >> (child % 32) & 1U) == 0) continue;
+                const Tile tile = child_of(parent, shape.n, child);
+                const glm::i64vec3 place = tile.position - windows[i].low;
+                if (glm::all(glm::greaterThanEqual(place, glm::i64vec3(0))) &&
+                    glm::all(glm::lessThan(place, glm::i64vec3(2))))
+                    inner.push_back(tile);
+            }
+        }
+        if (inner.empty()) {
+            windows.erase(windows.begin(), windows.begin() + std::ptrdiff_t(i) + 1);
+            return;
+        }
+        full = std::move(inner);
+    }
+}
+
 glm::dvec3 place_in(const Window& window, const TreeShape& shape, const Place& place) {
     const SplitPlace split = in_tiles(window.level, shape, place);
     const int shift = shape.m_shift() + shape.n_shift() * shape.levels_in_window();

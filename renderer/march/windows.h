@@ -8,6 +8,7 @@
 
 #include "renderer/pool/tree.h"
 #include "renderer/pool/tree_shape.h"
+#include "renderer/produce/oracle.h"
 #include "shaders/interop/types.h"
 
 namespace cairn::renderer {
@@ -28,6 +29,10 @@ struct Window {
 /// From the finest that rays can use to the one that holds the root. Each lies in the next, and the eye in
 /// each, unless it is further than a root cube's side away: then there is only the last.
 [[nodiscard]] std::vector<Window> windows_around(const TreeShape& shape, const Place& eye);
+
+/// Leaves out the windows around the eye that are empty, of which rays need know nothing. Asks the oracle and
+/// not the tree, whose answer would depend on what it holds.
+void drop_empty(std::vector<Window>& windows, const TreeShape& shape, Oracle& oracle);
 
 /// Where a place is in a window: in voxels `levels_in_window()` finer than its tiles, from its low corner.
 [[nodiscard]] glm::dvec3 place_in(const Window& window, const TreeShape& shape, const Place& place);

@@ -103,14 +103,16 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
             }
 #endif
         }
+        bool goes_on = true;
         if (place.slot < 0) {
-            if (!step_over(ray, empty_shift) && !leave_window(ray)) return SEEK_DONE;
+            goes_on = step_over(ray, empty_shift);
         } else {
             const int skimmed = skim(ray, place, turns);
             if (skimmed == SKIM_OCCUPIED) return SEEK_OCCUPIED;
-            if (skimmed == SKIM_ENDED && !leave_window(ray)) return SEEK_DONE;
+            goes_on = skimmed != SKIM_ENDED;
             place.slot = -1;
         }
+        if (!goes_on && !leave_window(ray)) return SEEK_DONE;
     }
 }
 
