@@ -65,7 +65,7 @@ void main() {
     RayState state = rays[index];
 
     const PixelRay seen = pixel_ray(pixel);
-    const float width = view.eye.w * (seen.skipped + state.normal_depth.w);
+    const float width = view.background.w * view.eye.w * (seen.skipped + state.normal_depth.w);
     const float side = voxel_side(width);
     receiver = seen.origin + seen.direction * state.normal_depth.w;
     receiver_normal = facing_normal(state, seen.direction);
