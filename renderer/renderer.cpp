@@ -51,6 +51,8 @@ void check(const View& view) {
         fail("the field of view is not between 0 and 180 degrees", "45 degrees suit most scenes");
     }
     if (!(view.pixel_error > 0.0)) fail("the pixel error is not positive", "1 is the default");
+    if (!(view.shadow_pixel_error >= 1.0 / 64.0 && view.shadow_pixel_error <= 64.0))
+        fail("the pixel error of shadows is not between 1/64 and 64", "1 is the default");
     const glm::dvec3 forward = camera.target - camera.eye;
     const double length = glm::length(forward);
     if (!std::isfinite(length)) fail("the camera or its target is not finite", "use finite coordinates");
@@ -158,7 +160,7 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     out.light = view.light.positional ? glm::vec4(glm::vec3(placed.light), 1.0F)
                                       : glm::vec4(glm::vec3(glm::normalize(view.light.towards)), 0.0F);
     out.light_color = glm::vec4(view.light.color, view.light.ambient);
-    out.background = glm::vec4(view.background, 0.0F);
+    out.background = glm::vec4(view.background, float(view.shadow_pixel_error));
     out.size_shadow = glm::ivec4(view.width, view.height, view.shadow == Shadow::hard ? 1 : 0, 0);
     const auto finite = [](const glm::vec4& v) { return std::isfinite(glm::dot(v, glm::vec4(1.0F))); };
     if (!finite(out.eye) || !finite(out.forward) || !finite(out.light)) {

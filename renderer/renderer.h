@@ -65,6 +65,9 @@ struct View {
     /// Size of a voxel on the screen, in pixels: a ray takes the tree level whose voxels are nearest to it,
     /// by ratio, as in mip mapping (Crassin et al. 2008, section 4.3).
     double pixel_error = 1.0;
+    /// Size of the voxels that a shadow ray meets, in those that its pixel shows: above 1 it reads, and asks
+    /// for, coarser data of its own. [1/64, 64]
+    double shadow_pixel_error = 1.0;
     Show show = Show::surface;
     /// The camera and the light are told from this tile's low corner, in units of its side, instead of in the
     /// world: so a view is exact however deep it is.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "renderer/renderer.h"
 #include "scenes/builtin.h"
 #include "scenes/snapshot.h"
@@ -90,6 +91,8 @@ std::vector<View> hard_views(const scenes::Scene& scene) {
     views.back().light.positional = true;
     views.back().light.position = middle + glm::dvec3(0.2, 0.9, 0.1) * size;
     views.front().light.towards = {0.0, 1.0, 0.0};
+    views[1].shadow_pixel_error = 4.0;
+    views[2].shadow_pixel_error = 16.0;
     return views;
 }
 
@@ -175,6 +178,25 @@ TEST_F(TraversalTest, RowsAloneStartAsInTheWholePicture) {
         const auto* first = whole.rgba.data() + std::size_t(rows.first) * std::size_t(view.width) * 4;
         EXPECT_TRUE(std::equal(part.rgba.begin(), part.rgba.end(), first)) << "rows from " << rows.first;
     }
+}
+
+TEST_F(TraversalTest, CoarserShadowRaysShadeAlmostTheSame) {
+    const scenes::Scene scene = ball_over_floor();
+    View view = hard_views(scene)[0];
+    view.pixel_error = 0.4;
+    view.light.towards = {0.8, 0.5, 0.1};
+    Renderer fine = make_renderer(scene, {});
+    const Image expected = fine.render(view);
+    view.shadow_pixel_error = 4.0;
+    Renderer coarse = make_renderer(scene, {});
+    const Image ours = coarse.render(view);
+    std::size_t different = 0;
+    for (std::size_t k = 0; k < ours.rgba.size(); k += 4)
+        different += std::abs(int(ours.rgba[k]) - int(expected.rgba[k])) > 32 ? 1 : 0;
+    EXPECT_GT(different, 0U) << "shadow rays meet the same voxels";
+    EXPECT_LT(different, ours.rgba.size() / 4 / 30);
+    view.shadow_pixel_error = 0.0;
+    EXPECT_THROW((void)coarse.render(view), Error);
 }
 
 }  // namespace

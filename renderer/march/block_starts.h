@@ -14,7 +14,7 @@ namespace cairn::renderer {
 /// Conservative, so that the picture does not change: what a ray could show or ask for lies in the cells of
 /// the tree that are not empty, taken no deeper than rays go, and the box of each is projected with a margin.
 /// That is the purpose of a beam pre-pass (rays of 1/8 resolution which march ahead of the others), done the
-/// other way round, as one draws proxy geometry (Crassin et al. 2009, section 4.2): there are some hundred
+/// other way round, as one draws proxy geometry: there are some hundred
 /// cells where there are thousands of beams.
 ///
 /// Reads the CPU mirror of the tree: call it between Tree::upload() and the pass.

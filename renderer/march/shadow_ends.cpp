@@ -14,13 +14,13 @@ using glm::dvec3;
 /// For the rounding of places and of what is computed from them, as a share of the largest coordinate.
 constexpr double place_margin = 0x1p-20;
 
-/// Side of the largest voxels that shadow rays of the view can meet: as wide as a pixel's cone at the far end
-/// of the root cube, or smaller.
-double largest_voxel(const TreeShape& shape, const ConeOfSight& cone) {
+/// Side of the largest voxels that shadow rays of the view can meet: as wide as those of the far end of the
+/// root cube, or smaller. @param width  of a shadow ray from what is seen at distance 1.
+double largest_voxel(const TreeShape& shape, const ConeOfSight& cone, double width) {
     const double root_side = double(shape.resolution());
     const double farthest = glm::length(glm::max(glm::abs(cone.eye), glm::abs(cone.eye - root_side)));
     double side = root_side / shape.m;
-    for (int level = 0; level < shape.max_level && side > cone.width * farthest; ++level)
+    for (int level = 0; level < shape.max_level && side > width * farthest; ++level)
         side /= shape.n;
     return side;
 }
@@ -44,7 +44,7 @@ ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree) {
 
     const dvec3 forward(view.forward);
     const ConeOfSight cone{dvec3(view.eye) - double(view.forward.w) * forward, double(view.eye.w)};
-    const double voxel = largest_voxel(shape, cone);
+    const double voxel = largest_voxel(shape, cone, cone.width * std::max(double(view.background.w), 1.0));
     const double slack = place_margin * root_side;
     const auto add = [&](const Box& box) {
         // A ray may meet the voxels of a coarser level there.

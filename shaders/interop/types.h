@@ -109,7 +109,7 @@ struct MarchView {
     vec4 up;               // half the image's height at distance 1
     vec4 light;            // xyz: position, or unit direction to the light; w: 1 = positional
     vec4 light_color;      // w: ambient
-    vec4 background;
+    vec4 background;       // w: width of shadow rays, in widths of their pixels' cones
     vec4 surface_color;    // base colour everywhere, when the pool holds none
     vec4 shadow_across;    // ShadowEnds, when there are any
     vec4 shadow_down;

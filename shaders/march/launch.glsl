@@ -4,6 +4,8 @@
 #include "mesh/proxy_span.glsl"
 #endif
 
+layout(local_size_x = PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) in;
+
 layout(std430, binding = SSBO_BLOCK_STARTS) readonly buffer BlockStartBlock { BlockStart block_starts[]; };
 
 uniform uint ray_count;

@@ -118,7 +118,7 @@ void main() {
         receiver_normal = mesh.plane;
     }
 #endif
-    const float width = view.eye.w * (seen.skipped + depth);
+    const float width = view.background.w * view.eye.w * (seen.skipped + depth);
     const float side = voxel_side(width);
     receiver = seen.origin + seen.direction * depth;
     const vec3 to_light = direction_to_light(receiver);

@@ -15,8 +15,6 @@
 
 #include "march/launch.glsl"
 
-layout(local_size_x = PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) in;
-
 uniform uint list_out;
 uniform uint shadow_list;
 

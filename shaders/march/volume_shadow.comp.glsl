@@ -55,7 +55,7 @@ void main() {
     RayState state = rays[index];
 
     const PixelRay seen = pixel_ray(pixel);
-    const float width = view.eye.w * (seen.skipped + state.normal_depth.w);
+    const float width = view.background.w * view.eye.w * (seen.skipped + state.normal_depth.w);
     const vec3 receiver = seen.origin + seen.direction * state.normal_depth.w;
     const float reach = view.light.w > 0.5 ? distance(view.light.xyz, receiver) : 1e30;
     Ray ray = make_ray(receiver, direction_to_light(receiver), reach, width, 0.0);
