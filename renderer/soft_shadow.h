@@ -37,8 +37,7 @@ struct SoftShadowPicture {
 class SoftShadowRenderer {
 public:
     /// The scene must outlive it, and the snapshot too: windows are fitted to its vertices for each light.
-    /// What is neither occluder nor receiver is not drawn; what is both casts and takes, but a surface would
-    /// shadow itself, so that is an error.
+    /// What is neither occluder nor receiver is not drawn. Nothing can be both: it would shadow itself.
     /// @throws Error  Fault::usage when a node is both, or a size is out of range; Fault::memory when it does
     ///                not fit.
     SoftShadowRenderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot,

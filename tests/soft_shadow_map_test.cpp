@@ -371,6 +371,36 @@ TEST_F(SoftShadow, OccluderThatTouchesTheReceiverShadowsUpToTheContact) {
     EXPECT_GT(under, 500);
 }
 
+// A million units from the world's origin floats hold 1/16 of a unit: all sums of places are in double.
+TEST_F(SoftShadow, FarFromTheOriginIsAsNear) {
+    ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.5, 3), floor_of_4);
+    RectangleLight light = light_above(3.0, 0.3, 0.2);
+    const ShadowFrustum frustum = {0.01, {dvec2(-0.3), dvec2(0.3)}, {dvec2(-0.4), dvec2(0.4)}};
+    const std::vector<float> near = shadow_of(scene, light, sizes(50, 40), frustum).visible().values;
+    const dvec3 away(1e6, -2e6, 3e6);
+    for (scenes::Node& node : scene.scene.nodes)
+        node.trs.translation = away;
+    scene.whole = scenes::take_snapshot(scene.scene);
+    scene.occluders = scenes::part_of(scene.whole, {false, true});
+    scene.receivers = scenes::part_of(scene.whole, {true, false});
+    light.centre += away;
+    const std::vector<float> far = shadow_of(scene, light, sizes(50, 40), frustum).visible().values;
+    double greatest = 0.0;
+    for (std::size_t i = 0; i < near.size(); ++i)
+        greatest = std::max(greatest, double(std::abs(near[i] - far[i])));
+    EXPECT_LT(greatest, 0.01);
+}
+
+// Of the first map of a context too, when the driver has drawn nothing before.
+TEST_F(SoftShadow, TellsItsTime) {
+    const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.5), floor_of_4);
+    const renderer::SoftShadowStatistics statistics =
+        shadow_of(scene, light_above(3.0, 0.3, 0.3), sizes(64, 128)).statistics();
+    EXPECT_GT(statistics.hide_ms, 0.0);
+    EXPECT_LT(statistics.milliseconds, 6e4);
+    EXPECT_LE(statistics.maps_ms + statistics.patches_ms + statistics.hide_ms, statistics.milliseconds);
+}
+
 TEST_F(SoftShadow, WithoutOccludersAllIsLit) {
     const ShadowScene scene({}, floor_of_4);
     const SoftShadowMap map = shadow_of(scene, light_above(3.0, 0.3, 0.3), sizes(32, 32, ShadowPasses::two));

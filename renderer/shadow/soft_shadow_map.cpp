@@ -208,6 +208,11 @@ void SoftShadowMap::Parts::set_uniforms() const {
         program->set("occluder_size", options.occluder_size);
         program->set("receiver_size", options.receiver_size);
     }
+    const glm::dvec2 light_size = 2.0 * half_size(light);
+    const ShadowWindow& onto = frustum.receivers;
+    hide_program.set("tangents_from_pixel",
+                     glm::vec4((onto.high - onto.low) / double(options.receiver_size) / light_size,
+                               onto.low / light_size));
     draw_map_program.set("near_distance", float(frustum.near_distance));
 }
 

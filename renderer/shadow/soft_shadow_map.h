@@ -28,7 +28,7 @@ enum class ShadowFormat : std::uint8_t {
 };
 
 struct SoftShadowOptions {
-    int occluder_size = 256;  ///< texels a side of the occluder map, [1, 2048]
+    int occluder_size = 128;  ///< texels a side of the occluder map, [1, 2048]; Atty et al.: mostly enough
     int receiver_size = 256;  ///< of the receiver map and of the soft shadow map, [1, 2048]
     ShadowPasses passes = ShadowPasses::two;
     ShadowFormat format = ShadowFormat::fp32;

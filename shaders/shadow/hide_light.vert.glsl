@@ -7,8 +7,9 @@ layout(location = ATTRIBUTE_SHADOW_PATCH) in uvec4 patch_words;  // MicroPatch
 uniform vec4 occluder_window;
 uniform int occluder_size;
 uniform int receiver_size;
+uniform vec2 light_half;
 
-flat out vec4 patch_edges;  // tangents: low.xy, high.xy
+flat out vec4 patch_edges;  // tangents over the light's width and height: low.xy, high.xy
 flat out float patch_inverse_depth;
 
 vec2 halves(uint word) {
@@ -18,7 +19,8 @@ vec2 halves(uint word) {
 void main() {
     const vec2 texel = halves(patch_words.x);
     patch_edges = vec4(tangents_at(occluder_window, texel, float(occluder_size)),
-                       tangents_at(occluder_window, texel + 1.0, float(occluder_size)));
+                       tangents_at(occluder_window, texel + 1.0, float(occluder_size))) /
+                  (2.0 * light_half).xyxy;
     patch_inverse_depth = uintBitsToFloat(patch_words.y);
     const vec2 high = vec2(gl_VertexID & 1, gl_VertexID >> 1);
     const vec2 corner = mix(halves(patch_words.z), halves(patch_words.w), high);

@@ -42,9 +42,7 @@ bool is_empty(ivec4 extent) {
 // The least inverse depth of the receivers in the extent, from at most four texels of the pyramid.
 float furthest_in(ivec4 extent) {
     const ivec2 span = extent.zw - extent.xy;
-    int level = 0;
-    while ((1 << level) < max(span.x, span.y))
-        ++level;
+    const int level = findMSB(max(span.x, span.y) - 1) + 1;  // its texels are no narrower than the extent
     const ivec2 low = extent.xy >> level;
     const ivec2 high = (extent.zw - 1) >> level;
     return min(min(texelFetch(furthest_receivers, low, level).x, texelFetch(furthest_receivers, high, level).x),
@@ -57,8 +55,8 @@ float furthest_in(ivec4 extent) {
 ivec4 penumbra_extent(vec4 edges, float w) {
     const int top = textureQueryLevels(furthest_receivers) - 1;
     ivec4 extent = texels_before(edges, w, texelFetch(furthest_receivers, ivec2(0), top).x);
-    for (int round = 0; round < 2 && !is_empty(extent); ++round)
-        extent = texels_before(edges, w, furthest_in(extent));
+    if (!is_empty(extent)) extent = texels_before(edges, w, furthest_in(extent));
+    if (!is_empty(extent)) extent = texels_before(edges, w, furthest_in(extent));
     return is_empty(extent) ? ivec4(0) : extent;
 }
 
