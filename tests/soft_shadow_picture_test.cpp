@@ -226,7 +226,8 @@ TEST_F(SoftShadowPictures, LeaveTheDrawStateAlone) {
     glEnable(GL_CULL_FACE);
     glBlendEquation(GL_FUNC_REVERSE_SUBTRACT);
     glBlendFunc(GL_DST_COLOR, GL_ZERO);
-    (void)renderer_of(scene, {.occluder_size = 32, .receiver_size = 32}).render(view_of(light_above(3.0, 0.3, 0.3)));
+    (void)renderer_of(scene, {.occluder_size = 32, .receiver_size = 32})
+        .render(view_of(light_above(3.0, 0.3, 0.3)));
     GLint equation = 0;
     GLint source = 0;
     glGetIntegerv(GL_BLEND_EQUATION_RGB, &equation);
