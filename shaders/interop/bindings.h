@@ -71,4 +71,21 @@
 #define UBO_VOLUME 3
 #define TEXTURE_TRANSFER 12  // DENSITY_STEPS^2 texels: column s0, row s1; rgb: mean emission, a: mean extinction
 
+// The soft shadow map. Its passes bind only these, and draw nothing of the marcher's.
+#define ATTRIBUTE_SHADOW_POSITION 0
+#define ATTRIBUTE_SHADOW_NORMAL 1
+#define ATTRIBUTE_SHADOW_COLOR 2
+#define ATTRIBUTE_SHADOW_TEXCOORD 3
+#define ATTRIBUTE_SHADOW_PATCH 0     // MicroPatch, one an instance
+#define TEXTURE_SHADOW_BASE_COLOR 0  // of the material that is drawn
+#define TEXTURE_SHADOW_OCCLUDERS 0   // inverse depths: the closest occluders, or the furthest
+#define TEXTURE_SHADOW_RECEIVERS 1   // inverse depths; 0 = no receiver
+#define TEXTURE_SHADOW_PYRAMID 2     // the least inverse depth of receivers, level by level; SHADOW_NONE = none
+#define TEXTURE_SHADOW_HIDDEN 3      // sums of what micro-patches hide of the light
+#define TEXTURE_SHADOW_HIDDEN_FURTHEST 4
+#define TEXTURE_SHADOW_VISIBLE 5     // the soft shadow map
+#define IMAGE_SHADOW_LEVEL 0         // what a compute pass writes
+#define SSBO_SHADOW_COUNTS 0         // SHADOW_COUNT_*, then the micro-patches of each row of the occluder map
+#define SSBO_SHADOW_PATCHES 1        // MicroPatch
+
 #endif

@@ -152,4 +152,13 @@
 // A ray stops when less light than this is left: half a step of an 8-bit image.
 #define OPAQUE_TRANSMITTANCE (1.0 / 512.0)
 
+// Soft shadow maps. Inverse depths stand in textures; no surface is ever as close to the light as this one.
+#define SHADOW_NONE 1e30
+#define SHADOW_LIST_GROUP 32
+#define SHADOW_COUNT_PATCHES 0
+#define SHADOW_COUNT_FRAGMENTS 1  // texels of all penumbra extents: low word, then high word
+#define SHADOW_COUNT_ROWS 3
+// Texels that a penumbra extent reaches past where rounding may have put its edges.
+#define SHADOW_EXTENT_SLACK 0.0625
+
 #endif

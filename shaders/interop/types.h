@@ -175,7 +175,17 @@ struct MarchCounters {
     uint launched;         // rays that a proxy let run
 };
 
+// A texel of the occluder map as a small rectangle parallel to the light (Atty et al. 2005, section 3.2), and the texels of
+// the soft shadow map that it may darken. Words of two 16-bit halves: x | y << 16.
+struct MicroPatch {
+    uint texel;            // of the occluder map
+    float inverse_depth;   // 1 / distance from the light's plane
+    uint extent_low;       // first texel
+    uint extent_high;      // past the last texel; equal to the first: it darkens none
+};
+
 #ifdef __cplusplus
+static_assert(sizeof(MicroPatch) == 16, "GLSL sees another layout");
 static_assert(sizeof(NodeEntry) == 16, "GLSL sees another layout");
 static_assert(sizeof(BrickTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(FractalTile) == 32, "GLSL sees another layout");
