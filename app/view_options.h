@@ -19,6 +19,7 @@ struct ViewOptions {
     bool camera_given = false;
     std::optional<std::string> light;       ///< as it was given
     std::optional<std::string> brick_pool;  ///< likewise
+    std::optional<std::string> brick_cache;
 };
 void add_view_options(CLI::App& verb, ViewOptions& options);
 

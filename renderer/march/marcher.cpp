@@ -20,11 +20,16 @@ constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY 
 
 }  // namespace
 
-Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders)
+Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders, int query_capacity)
     : shaders_(shaders),
       defines_(shape.defines(has_color)),
       view_(sizeof(interop::MarchView), "view"),
-      queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
+      queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer"),
+      query_capacity_(std::uint32_t(query_capacity)) {
+    if (query_capacity < 1 || query_capacity > QUERY_CAPACITY) {
+        throw Error(Fault::usage, "tile queries", std::to_string(query_capacity) + " are no capacity",
+                    "choose between 1 and " + std::to_string(QUERY_CAPACITY));
+    }
     (void)primary_program(PassKind::patient);
     (void)shadow_program(PassKind::patient);
 }
@@ -122,8 +127,8 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     result.stood_in = counters.stood_in;
     result.waiting_primary = waiting_primary_ = counters.waiting_primary;
     result.waiting_shadow = waiting_shadow_ = counters.waiting_shadow;
-    result.queries = queries_.read_all<std::uint32_t>(std::min<std::size_t>(counters.queries, QUERY_CAPACITY),
-                                                      query_header_bytes);
+    result.queries =
+        queries_.read_all<std::uint32_t>(std::min(counters.queries, query_capacity_), query_header_bytes);
     if (kind != PassKind::patient)
         result.query_counts = queries_.read_all<std::uint32_t>(QUERY_COUNTS, query_counts_offset);
     result.brick_stamps = usage_.read_all<std::uint32_t>(std::size_t(pool.slot_count()));
@@ -145,6 +150,7 @@ void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool
     }
     program.set("shadow_list", list(1, list_side_ ^ 1));
     program.set("pass_number", round);
+    program.set("query_capacity", query_capacity_);
     program.set("usage_query_offset", query_bits_offset_);
     program.set("pool_slots", pool.slots());
     program.use();

@@ -40,7 +40,9 @@ struct PassResult {
 /// query buffer (Crassin et al. 2008, sections 5.1 to 5.3).
 class Marcher {
 public:
-    Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders);
+    /// @param query_capacity  tiles that a pass can ask for, [1, QUERY_CAPACITY].
+    /// @throws Error (Fault::usage) when it is another.
+    Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders, int query_capacity);
 
     /// Rows of a picture that are marched at once: as many as the driver's largest buffer holds ray states
     /// for.
@@ -87,6 +89,7 @@ private:
     std::size_t capacity_ = 0;  // pixels that the buffers hold
     std::uint32_t query_bits_offset_ = 0;
     std::uint32_t entry_count_ = 0;
+    std::uint32_t query_capacity_ = 0;
     std::uint32_t waiting_primary_ = 0;
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;

@@ -75,8 +75,18 @@ BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
     size_bytes_ = std::size_t(slot_count_) * slot_bytes;
 }
 
+glm::ivec3 BrickPool::slot_place(int slot) const {
+    return {slot % slots_.x, slot / slots_.x % slots_.y, slot / (slots_.x * slots_.y)};
+}
+
 glm::ivec3 BrickPool::first_texel(int slot) const {
-    return glm::ivec3(slot % slots_.x, slot / slots_.x % slots_.y, slot / (slots_.x * slots_.y)) * side_;
+    return slot_place(slot) * side_;
+}
+
+std::vector<BrickPool::Layer> BrickPool::layers() const {
+    const Layer color = has_color_ ? Layer{color_.id(), GL_RGBA, GL_UNSIGNED_BYTE, side_, 4}
+                                   : Layer{color_.id(), GL_RED, GL_UNSIGNED_BYTE, side_, 1};
+    return {color, {normal_.id(), GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, side_, 4}};
 }
 
 void BrickPool::bind_for_reading() const {
