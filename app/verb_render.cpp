@@ -57,6 +57,7 @@ double converged_frame_ms(renderer::Renderer& renderer, const renderer::View& vi
     std::vector<double> frames;
     double total = 0.0;
     while (frames.size() < measured_frames && total < measuring_ms) {
+        renderer.forget_picture();
         (void)renderer.render(view);
         frames.push_back(renderer.statistics().milliseconds);
         total += frames.back();
@@ -134,9 +135,13 @@ ExitCode run(const Options& options) {
     report.add("tile_queries", first.tile_queries);
     report.add("bricks_produced", first.bricks_produced);
     report.add("bricks_evicted", first.bricks_evicted);
+    report.add("bricks_relinked", first.bricks_relinked);
+    report.add("bricks_cached", first.bricks_cached);
+    report.add("bricks_restored", first.bricks_restored);
     report.add("bricks_resident", renderer.statistics().bricks_resident);
     report.add("node_pool_bytes", first.node_pool_bytes);
     report.add("brick_pool_bytes", first.brick_pool_bytes);
+    report.add("brick_cache_bytes", first.brick_cache_bytes);
     report.add("peak_rss_bytes", peak_rss_bytes());
     report.add("driver", driver.name());
     report.add("backend", driver.backend());

@@ -20,8 +20,9 @@ struct ViewOptions {
     renderer::View view;  ///< camera and light only count when they were given
     renderer::TreeOptions tree;
     bool camera_given = false;
-    std::optional<std::string> light;        ///< as it was given
-    std::optional<std::string> brick_pool;   ///< likewise
+    std::optional<std::string> light;       ///< as it was given
+    std::optional<std::string> brick_pool;  ///< likewise
+    std::optional<std::string> brick_cache;
     std::optional<TransferChoice> transfer;  ///< of a volume
     int copies = 1;                          ///< of a volume, along each axis
     int zoom = 0;                            ///< of builtin:fractal, a power of two

@@ -1,20 +1,27 @@
 #include "renderer/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
+#include <optional>
 #include <tuple>
 #include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "renderer/kept_picture.h"
 #include "renderer/march/marcher.h"
 #include "renderer/march/transfer_table.h"
 #include "renderer/march/windows.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/pool/brick_cache.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
+#include "renderer/produce/batch_pace.h"
 #include "renderer/produce/dense_field.h"
 #include "renderer/produce/surface_content.h"
 #include "renderer/produce/volume_content.h"
@@ -26,8 +33,64 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double milliseconds(Clock::duration time) {
+    return std::chrono::duration<double, std::milli>(time).count();
+}
 double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    return milliseconds(Clock::now() - start);
+}
+
+Clock::time_point deadline_in(double budget_ms) {
+    constexpr double a_day = 86.4e6;
+    if (!(budget_ms >= 0.0))
+        throw Error(Fault::usage, "frame budget", "it is negative or not a number", "give it milliseconds");
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                              std::chrono::duration<double, std::milli>(std::min(budget_ms, a_day)));
+}
+
+/// A tile query of a frame that must not take long.
+struct Question {
+    std::uint32_t entry, rays;
+    int level;
+    bool for_children, to_stand_in;
+};
+
+/// Asked for by most rays first, the coarsest first among equals.
+std::vector<Question> by_urgency(const PassResult& pass, const Tree& tree) {
+    std::vector<Question> questions;
+    for (const std::uint32_t query : pass.queries) {
+        const bool to_stand_in = query >= 2 * tree.entry_count();
+        const std::uint32_t entry = to_stand_in ? query - 2 * tree.entry_count() : query / 2;
+        questions.push_back({entry, pass.query_counts[query % QUERY_COUNTS], tree.tile(entry).level,
+                             !to_stand_in && query % 2 == QUERY_CHILDREN, to_stand_in});
+    }
+    std::sort(questions.begin(), questions.end(), [](const Question& a, const Question& b) {
+        return std::tuple(b.rays, a.level, a.entry) < std::tuple(a.rays, b.level, b.entry);
+    });
+    return questions;
+}
+
+/// Frames of the same rows of the same view, one after the other.
+struct Refined {
+    View view;
+    Rows rows;
+    std::uint32_t since = 0;  ///< round in which they began; what they used is kept
+    /// When the pools had filled: tiles that were stood in for. What stood in at first is kept too; while a
+    /// new start leaves fewer missing, there is another.
+    std::uint32_t stood_in = 0xFFFFFFFFU;
+};
+
+/// The same rays at fewer pixels: each sees the levels that it would see in the whole picture.
+View thinned(const View& view) {
+    View thin = view;
+    for (int stride = 4;
+         thin.width == view.width || Marcher::band_rows(thin.width, thin.height) < thin.height; stride *= 2) {
+        thin.width = (view.width + stride - 1) / stride;
+        thin.height = (view.height + stride - 1) / stride;
+        if (view.width == 1) break;
+    }
+    thin.pixel_error = view.pixel_error * thin.height / view.height;
+    return thin;
 }
 
 voxelizer::Surface flatten(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
@@ -76,6 +139,15 @@ std::uint32_t background_pixel(const glm::vec3& linear) {
         pixel |= std::uint32_t(std::lround(255.0 * encoded)) << (8 * channel);
     }
     return pixel;
+}
+
+Image background_image(const View& view, Rows rows) {
+    Image image{view.width, rows.count, {}};
+    const std::uint32_t pixel = background_pixel(view.background);
+    image.rgba.resize(std::size_t(view.width) * std::size_t(rows.count) * 4);
+    for (std::size_t i = 0; i < image.rgba.size(); ++i)
+        image.rgba[i] = std::uint8_t(pixel >> (8 * (i % 4)) & 0xFFU);
+    return image;
 }
 
 void check_anchor(const std::optional<Tile>& anchor, const TreeShape& shape) {
@@ -187,8 +259,17 @@ struct Renderer::Parts {
           pool(shape, content->channels(), options.brick_pool_bytes),
           tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{}),
                content->has_constant()),
-          marcher(shape, content->has_color(), {options.traversal, options.block_starts}, shaders,
-                  with_content(std::move(kind), *content)) {}
+          marcher(shape, content->has_color(),
+                  {options.traversal, options.block_starts, options.query_capacity}, shaders,
+                  with_content(std::move(kind), *content)) {
+        if (options.brick_cache_bytes == 0) return;
+        if (content->has_low_frequency()) {
+            throw Error(Fault::usage, "brick cache", "it cannot tell which tiles of this content are final",
+                        "leave it out");
+        }
+        cache.emplace(pool, options.brick_cache_bytes);
+        tree.record_evictions(true);
+    }
 
     [[nodiscard]] interop::MarchView march_view_of(const View& view);
     void find_tiles_asked_for(const std::vector<std::uint32_t>& entries);
@@ -196,16 +277,23 @@ struct Renderer::Parts {
     void serve(std::vector<std::uint32_t> queries);
     void refine(Clock::time_point deadline);
     [[nodiscard]] PassResult march(PassKind kind);
-    [[nodiscard]] bool serve_until(Clock::time_point deadline, const PassResult& pass);
+    enum class Serve : std::uint8_t { in_any_case, in_time, ahead };
+    [[nodiscard]] bool serve_until(Clock::time_point deadline, const PassResult& pass, Serve how);
     void subdivide(std::uint32_t entry);
     [[nodiscard]] int draw_mix(const interop::MarchView& view, int row);
     void give_children(std::uint32_t entry);
     void request(std::uint32_t entry, bool may_stay);
+    void restore_requests();
     void produce_requests();
     /// Where only a tile's own brick tells whether anything finer would show, that comes first.
     [[nodiscard]] bool wants_brick_first(std::uint32_t entry) const {
         return content->has_low_frequency() && tree.wants_children(entry) && !tree.was_produced(entry);
     }
+    void keep_nothing();
+    void keep_what_was_used_for(const View& view, Rows rows);
+    [[nodiscard]] bool is_empty() const;
+    void note_caches(const FrameStatistics& before);
+    [[nodiscard]] FrameStatistics totals() const;
 
     TreeShape shape;
     std::unique_ptr<Content> content;
@@ -216,6 +304,12 @@ struct Renderer::Parts {
     std::vector<interop::MarchWindow> marched_windows;
     Mix mix;
     MarchMix drawn;  ///< of `mix`, around the band that is marched
+    std::optional<BrickCache> cache;
+    BatchPace batches;
+    KeptPicture picture;
+    Refined refined;
+    std::uint64_t prefetched = 0;   ///< since the last frame
+    std::uint32_t frame_round = 1;  ///< what was used since is the last frame's
     std::uint32_t round = 1;
     std::vector<BrickRequest> requests;  // that wait to be produced together
     std::vector<std::uint32_t> requested_entries;
@@ -265,6 +359,7 @@ Renderer::~Renderer() = default;
 
 void Renderer::set_mix(const Mix& mix) {
     parts_->mix = mix;
+    parts_->picture.forget();
 }
 
 /// Draws what the rays of a row meet beside voxels. Returns the row behind the last that has been drawn.
@@ -317,16 +412,19 @@ void Renderer::Parts::give_children(std::uint32_t entry) {
 /// Places the windows too, where there are any.
 interop::MarchView Renderer::Parts::march_view_of(const View& view) {
     const voxelizer::Grid& grid = content->grid();
+    const glm::vec4 surface_color(content->uniform_color(), 1.0F);
     if (!shape.has_windows()) {
         const View unanchored = in_world(view, grid, shape);
-        return march_view(unanchored, in_voxels(unanchored, grid), shape.n);
+        interop::MarchView marched = march_view(unanchored, in_voxels(unanchored, grid), shape.n);
+        marched.surface_color = surface_color;
+        return marched;
     }
     const Place eye = place_of(view, view.camera.eye, grid);
     const Place light = place_of(view, view.light.position, grid);
     windows = windows_around(shape, eye);
     drop_empty(windows, shape, content->oracle());
-    const interop::MarchView marched =
-        march_view(view, in_window(view, grid, shape, windows.back()), shape.n);
+    interop::MarchView marched = march_view(view, in_window(view, grid, shape, windows.back()), shape.n);
+    marched.surface_color = surface_color;
     marched_windows =
         march_windows(windows, shape, eye, view.light.positional ? &light : nullptr, view.light.towards);
     marched_windows.back().eye = marched.eye;  // nearer to the scene, where the eye is far from it
@@ -361,7 +459,23 @@ void Renderer::Parts::request(std::uint32_t entry, bool may_stay) {
     requested_entries.push_back(entry);
 }
 
+/// Answers from main memory what is there.
+void Renderer::Parts::restore_requests() {
+    cache->store(tree.take_evicted());
+    std::vector<BrickRequest> unknown;
+    std::vector<std::uint32_t> unknown_entries;
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+        if (cache->restore(requests[i].tile, requests[i].slot)) continue;
+        unknown.push_back(requests[i]);
+        unknown_entries.push_back(requested_entries[i]);
+    }
+    requests = std::move(unknown);
+    requested_entries = std::move(unknown_entries);
+}
+
+/// Puts bricks in the slots that they were given: from main memory where they are there, else produced.
 void Renderer::Parts::produce_requests() {
+    if (cache) restore_requests();
     const std::vector<Produced> found = content->producer().produce(requests, pool);
     for (std::size_t i = 0; i < found.size(); ++i) {
         const std::uint32_t entry = requested_entries[i];
@@ -418,67 +532,117 @@ PassResult Renderer::Parts::march(PassKind kind) {
     return pass;
 }
 
-/// Answers tile queries in the order of how many rays ask, the coarsest first among equals, until time is up;
-/// one batch of them in any case. @return whether any was answered.
-bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& pass) {
-    /// Answered at once: the deadline is looked at between batches.
-    constexpr std::size_t batch = 16;
-    struct Question {
-        std::uint32_t entry, rays;
-        int level;
-        bool for_children, to_stand_in;
-    };
-    std::vector<Question> questions;
-    for (const std::uint32_t query : pass.queries) {
-        const bool to_stand_in = query >= 2 * tree.entry_count();
-        const std::uint32_t entry = to_stand_in ? query - 2 * tree.entry_count() : query / 2;
-        questions.push_back({entry, pass.query_counts[query % QUERY_COUNTS], tree.tile(entry).level,
-                             !to_stand_in && query % 2 == QUERY_CHILDREN, to_stand_in});
-    }
-    std::sort(questions.begin(), questions.end(), [](const Question& a, const Question& b) {
-        return std::tuple(b.rays, a.level, a.entry) < std::tuple(a.rays, b.level, b.entry);
-    });
-    const std::uint64_t before = statistics.nodes_subdivided + statistics.bricks_produced;
+/// Answers the most urgent tile queries until time is up, in batches that end soon after it; the first batch
+/// in any case, or only while there is time, or (ahead) so that nothing loses its place which the last frame
+/// used.
+/// @return whether any was answered.
+bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& pass, Serve how) {
+    const std::vector<Question> questions = by_urgency(pass, tree);
+    statistics.tile_queries += questions.size();
+    std::uint64_t all_answered = 0;
     std::vector<std::uint32_t> parents;
-    for (std::size_t first = 0; first < questions.size(); first += batch) {
-        for (std::size_t i = first; i < std::min(first + batch, questions.size()); ++i) {
-            const Question& question = questions[i];
-            if (question.for_children && !wants_brick_first(question.entry)) {
-                subdivide(question.entry);
-                parents.push_back(question.entry);
+    auto next = questions.begin();
+    for (bool first = how == Serve::in_any_case; next != questions.end(); first = false) {
+        const auto start = Clock::now();
+        if (start > deadline && !first) break;
+        const std::size_t batch = batches.batch(milliseconds(deadline - start));
+        const std::uint64_t nodes_before = statistics.nodes_subdivided;
+        for (;
+             next != questions.end() && requests.size() + statistics.nodes_subdivided - nodes_before < batch;
+             ++next) {
+            if (next->for_children && !wants_brick_first(next->entry)) {
+                subdivide(next->entry);
+                parents.push_back(next->entry);
             } else {
-                request(question.entry, !question.to_stand_in);
+                request(next->entry, !next->to_stand_in && how != Serve::ahead);
             }
         }
         find_tiles_asked_for(parents);
         parents.clear();
+        const std::size_t answered = requests.size() + statistics.nodes_subdivided - nodes_before;
         produce_requests();
         glFinish();
-        if (Clock::now() > deadline) break;
+        batches.learn(milliseconds_since(start), answered);
+        all_answered += answered;
     }
-    statistics.tile_queries += questions.size();
     tree.upload();
-    return statistics.nodes_subdivided + statistics.bricks_produced > before;
+    return all_answered > 0;
 }
 
 /// Passes and production in turn until nothing is missing or time is up; then what is missing is stood in
 /// for.
 void Renderer::Parts::refine(Clock::time_point deadline) {
+    bool any_answered = false;
+    auto serve_pass = [&](const PassResult& pass) {
+        const auto start = Clock::now();
+        const bool answered = serve_until(deadline, pass, any_answered ? Serve::in_time : Serve::in_any_case);
+        statistics.produce_ms += milliseconds_since(start);
+        any_answered = any_answered || answered;
+        return answered;
+    };
     for (;;) {
         const PassResult pass = march(PassKind::progressive);
-        const auto start = Clock::now();
-        const bool answered = serve_until(deadline, pass);
-        statistics.produce_ms += milliseconds_since(start);
+        const bool answered = serve_pass(pass);
         if (pass.done()) return;
         if (Clock::now() > deadline || (!answered && !pass.queries.empty())) break;
     }
+    std::uint32_t stood_in = 0;
     for (bool done = false; !done;) {
         const PassResult pass = march(PassKind::stand_in);
+        stood_in += pass.stood_in;
         statistics.converged = statistics.converged && pass.stood_in == 0;
         // What only these rays have asked for, as shadow rays may, brings the next frame forward.
-        (void)serve_until(deadline, pass);
+        (void)serve_pass(pass);
         done = pass.done();
     }
+    if (any_answered || stood_in >= refined.stood_in) return;
+    refined.since = 0;
+    refined.stood_in = stood_in;
+}
+
+/// A frame that has all the time may give up what a pass has used: no ray goes back.
+void Renderer::Parts::keep_nothing() {
+    frame_round = round;
+    tree.keep_since(0);
+}
+
+/// What frames of these rows use is kept from the first of them on, so that they come to an end.
+void Renderer::Parts::keep_what_was_used_for(const View& view, Rows rows) {
+    if (!(view == refined.view && rows == refined.rows)) refined = {view, rows};
+    if (refined.since == 0) refined.since = round;
+    frame_round = refined.since;
+    tree.keep_since(frame_round);
+}
+
+/// Nothing in the whole scene: known without a ray. (A tree of one level has no children to tell it.)
+bool Renderer::Parts::is_empty() const {
+    return shape.max_level > 0 && tree.node(0).child_mask == glm::uvec2(0);
+}
+
+/// Counters since the renderer was made.
+FrameStatistics Renderer::Parts::totals() const {
+    FrameStatistics total;
+    total.bricks_evicted = tree.counters().bricks_evicted;
+    total.nodes_evicted = tree.counters().nodes_evicted;
+    total.bricks_relinked = tree.counters().bricks_relinked;
+    total.bricks_cached = cache ? cache->counters().stored : 0;
+    total.bricks_restored = cache ? cache->counters().restored : 0;
+    return total;
+}
+
+void Renderer::Parts::note_caches(const FrameStatistics& before) {
+    const FrameStatistics now = totals();
+    statistics.bricks_evicted = now.bricks_evicted - before.bricks_evicted;
+    statistics.nodes_evicted = now.nodes_evicted - before.nodes_evicted;
+    statistics.bricks_relinked = now.bricks_relinked - before.bricks_relinked;
+    statistics.bricks_cached = now.bricks_cached - before.bricks_cached;
+    statistics.bricks_restored = now.bricks_restored - before.bricks_restored;
+    statistics.bricks_prefetched = std::exchange(prefetched, 0);
+    statistics.bricks_resident = std::uint64_t(tree.bricks_resident());
+    statistics.brick_slots = std::uint64_t(pool.slot_count());
+    statistics.node_pool_bytes = tree.size_bytes();
+    statistics.brick_pool_bytes = pool.size_bytes();
+    statistics.brick_cache_bytes = cache ? cache->size_bytes() : 0;
 }
 
 /// Passes of rays and what they ask for, in turn, until nothing is missing.
@@ -507,16 +671,18 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
     }
     Parts& parts = *parts_;
     const auto start = Clock::now();
-    const Tree::Counters before = parts.tree.counters();
+    const FrameStatistics before = parts.totals();
     parts.statistics = FrameStatistics{};
     FrameStatistics& statistics = parts.statistics;
 
     interop::MarchView marched = parts.march_view_of(view);
-    marched.surface_color = glm::vec4(parts.content->uniform_color(), 1.0F);
     const int band_rows = Marcher::band_rows(view.width, view.height);
-    Image image{view.width, rows.count, {}};
+    Image image = parts.is_empty() && parts.mix.meshes == nullptr ? background_image(view, rows)
+                                                                  : parts.picture.rows(view, rows);
+    const bool is_known = !image.rgba.empty();
+    if (!is_known) image = {view.width, rows.count, {}};
     const int end = rows.first + rows.count;
-    for (int row = rows.first; row < end; row += marched.band.y) {
+    for (int row = rows.first; row < end && !is_known; row += marched.band.y) {
         const int drawn_end = std::min(parts.draw_mix(marched, row), end);
         marched.band = glm::ivec4(row, std::min(band_rows, drawn_end - row), int(view.show),
                                   int(background_pixel(view.background)));
@@ -530,25 +696,21 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
         }
     }
 
+    if (!is_known && statistics.converged) parts.picture.keep(view, rows, image);
+    parts.note_caches(before);
     statistics.milliseconds = milliseconds_since(start);
-    statistics.bricks_evicted = parts.tree.counters().bricks_evicted - before.bricks_evicted;
-    statistics.nodes_evicted = parts.tree.counters().nodes_evicted - before.nodes_evicted;
-    statistics.bricks_resident = std::uint64_t(parts.tree.bricks_resident());
-    statistics.brick_slots = std::uint64_t(parts.pool.slot_count());
-    statistics.node_pool_bytes = parts.tree.size_bytes();
-    statistics.brick_pool_bytes = parts.pool.size_bytes();
     return image;
 }
 
 Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
-    parts_->tree.keep_since(0);
+    parts_->keep_nothing();
     return march(view, {0, view.height}, [&](int row) {
         parts_->converge(progress, double(view.width) * view.height, double(view.width) * row);
     });
 }
 
 Image Renderer::render_rows(const View& view, Rows rows) {
-    parts_->tree.keep_since(0);
+    parts_->keep_nothing();
     return march(view, rows, [&](int) { parts_->converge({}, 0.0, 0.0); });
 }
 
@@ -557,14 +719,34 @@ Image Renderer::render_within(const View& view, double budget_ms) {
 }
 
 Image Renderer::render_rows_within(const View& view, Rows rows, double budget_ms) {
-    constexpr double a_day = 86.4e6;
-    if (!(budget_ms >= 0.0))
-        throw Error(Fault::usage, "frame budget", "it is negative or not a number", "give it milliseconds");
-    const auto deadline =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                           std::chrono::duration<double, std::milli>(std::min(budget_ms, a_day)));
-    parts_->tree.keep_since(parts_->round);
+    const auto deadline = deadline_in(budget_ms);
+    parts_->keep_what_was_used_for(view, rows);
     return march(view, rows, [&](int) { parts_->refine(deadline); });
+}
+
+std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
+    check(next);
+    const auto deadline = deadline_in(budget_ms);
+    Parts& parts = *parts_;
+    if (parts.is_empty()) return 0;
+    const FrameStatistics of_frame = parts.statistics;
+    const View thin = thinned(next);
+    interop::MarchView marched = parts.march_view_of(thin);
+    marched.band = glm::ivec4(0, thin.height, int(thin.show), int(background_pixel(thin.background)));
+    parts.tree.keep_since(parts.frame_round);
+    parts.marcher.begin_frame(marched, parts.tree, parts.pool);
+    while (Clock::now() < deadline) {
+        const PassResult pass = parts.march(PassKind::progressive);
+        if (!parts.serve_until(deadline, pass, Parts::Serve::ahead) || pass.done()) break;
+    }
+    const std::uint64_t produced = parts.statistics.bricks_produced - of_frame.bricks_produced;
+    parts.prefetched += produced;
+    parts.statistics = of_frame;
+    return produced;
+}
+
+void Renderer::forget_picture() {
+    parts_->picture.forget();
 }
 
 const FrameStatistics& Renderer::statistics() const {

@@ -33,6 +33,9 @@ struct Camera {
 /// Looks at the whole of the bounds from the front, above and to the right.
 [[nodiscard]] Camera framing_camera(const scenes::Bounds& bounds, double aspect);
 
+/// Where a camera that moved from `before` to `now` will be after as much time again, if it goes on alike.
+[[nodiscard]] Camera extrapolated(const Camera& before, const Camera& now);
+
 /// One light, white by default.
 struct Light {
     bool positional = false;
@@ -79,6 +82,7 @@ struct View {
 struct Rows {
     int first = 0;
     int count = 0;
+    bool operator==(const Rows&) const = default;
 };
 
 /// The shape of the N^3-tree and the bounds of its caches (Crassin et al. 2008, section 4).
@@ -95,6 +99,10 @@ struct TreeOptions {
     /// Rays start where the tree says that there may be something, and none is made where there is nothing.
     /// The picture is the same without it, only slower.
     bool block_starts = true;
+    /// Main memory for bricks that had to leave the pool, so that they need not be produced again; 0: none.
+    std::size_t brick_cache_bytes = 0;
+    /// Tiles that one pass of rays can ask for, [1, 65536]; the rest is asked for again by the next pass.
+    int query_capacity = 65536;
 };
 
 /// @throws Error (Fault::usage) for a shape that cannot work.
@@ -113,20 +121,25 @@ struct FrameStatistics {
     double milliseconds = 0.0;
     std::uint64_t rays_launched =
         0;           ///< of the pixel blocks that may see anything; with a proxy, of the pixels it covers
-    int passes = 0;  ///< ray-marching passes until nothing was missing
+    int passes = 0;  ///< ray-marching passes; 0 where the picture was known without any
     std::uint64_t tile_queries = 0;  ///< misses that rays reported
     std::uint64_t nodes_subdivided = 0;
     std::uint64_t bricks_produced = 0;
     std::uint64_t constant_tiles = 0;  ///< of those: turned out to hold one value, and keep no brick
     std::uint64_t bricks_evicted = 0;
     std::uint64_t nodes_evicted = 0;
-    double march_ms = 0.0;              ///< of `milliseconds`: rays
-    double produce_ms = 0.0;            ///< of `milliseconds`: subdividing, producing, uploading
-    bool converged = true;              ///< nothing was missing: the picture is that of render()
-    std::uint64_t bricks_resident = 0;  ///< after the frame
-    std::uint64_t brick_slots = 0;      ///< the most that can be resident
-    std::size_t node_pool_bytes = 0;    ///< what the two stores take, all of it, used or not
+    std::uint64_t bricks_relinked = 0;    ///< still in the pool when their node came back
+    std::uint64_t bricks_cached = 0;      ///< read back into main memory when they had to leave the pool
+    std::uint64_t bricks_restored = 0;    ///< taken from main memory instead of produced
+    std::uint64_t bricks_prefetched = 0;  ///< produced by prefetch() since the frame before
+    double march_ms = 0.0;                ///< of `milliseconds`: rays
+    double produce_ms = 0.0;              ///< of `milliseconds`: subdividing, producing, uploading
+    bool converged = true;                ///< nothing was missing: the picture is that of render()
+    std::uint64_t bricks_resident = 0;    ///< after the frame
+    std::uint64_t brick_slots = 0;        ///< the most that can be resident
+    std::size_t node_pool_bytes = 0;      ///< what the two stores take, all of it, used or not
     std::size_t brick_pool_bytes = 0;
+    std::size_t brick_cache_bytes = 0;  ///< what is kept in main memory now
 };
 
 class MeshRaster;
@@ -152,7 +165,8 @@ struct Mix {
 /// current at its construction.
 ///
 /// The picture depends on the view (and the mix) alone: not on the pools' sizes, nor on what earlier frames
-/// left in them.
+/// left in them. So the finished rows of the last view are kept (up to 64 MiB) and given again, without
+/// marching, for as long as the view does not change.
 class Renderer {
 public:
     /// The scene and the snapshot are not needed afterwards.
@@ -190,7 +204,8 @@ public:
     /// at all. Rays are never cut short: a frame takes at least as long as marching it once.
     ///
     /// Called again for the same view, it goes on where it stopped, until the picture is that of render():
-    /// statistics().converged. Pools too small for the view leave some of it at a lower level of detail.
+    /// statistics().converged. What it used for this view since the first of these calls it does not give up,
+    /// so pools too small for the view leave some of it at a lower level of detail and come to rest.
     [[nodiscard]] Image render_within(const View& view, double budget_ms);
 
     /// The same for some rows of the picture, which are those of the whole one, bit for bit: for a caller
@@ -199,7 +214,15 @@ public:
     [[nodiscard]] Image render_rows(const View& view, Rows rows);
     [[nodiscard]] Image render_rows_within(const View& view, Rows rows, double budget_ms);
 
-    /// Of the last `render()` or `render_within()`.
+    /// Produces bricks for a view that may be asked for next, where it finds room that the last frame does
+    /// not need, until `budget_ms` have passed. Changes no picture.
+    /// @return  bricks produced.
+    std::uint64_t prefetch(const View& next, double budget_ms);
+
+    /// The next frame is marched, whatever its view: for measurements.
+    void forget_picture();
+
+    /// Of the last `render()` or `render_within()`, whole or in rows.
     [[nodiscard]] const FrameStatistics& statistics() const;
 
 private:

@@ -7,9 +7,9 @@
 
 namespace cairn::renderer {
 
-/// Between which distances from the eye the rays of each block of PIXEL_BLOCK_SIDE^2 pixels of the band may meet
-/// anything, as far as the node pool tells: blocks that see nothing are left out, so that no ray is made for
-/// them.
+/// Between which distances from the eye the rays of each block of PIXEL_BLOCK_SIDE^2 pixels of the band may
+/// meet anything, as far as the node pool tells: blocks that see nothing are left out, so that no ray is made
+/// for them.
 ///
 /// Conservative, so that the picture does not change: what a ray could show or ask for lies in the cells of
 /// the tree that are not empty, taken no deeper than rays go, and the box of each is projected with a margin.

@@ -48,8 +48,8 @@ public:
         const bool goes_down =
             tile.level < shape_.max_level && voxel_side > 0.999 * cone_.width * cone_.distance_to(box);
         const bool knows_children = (node.child_mask.x | node.child_mask.y) != 0;
-        // A tile without its brick is asked for, or stood in for, as a whole; one that nothing finer adds to is
-        // shown as a whole.
+        // A tile without its brick is asked for, or stood in for, as a whole; one that nothing finer adds to
+        // is shown as a whole.
         const bool has_brick = (node.brick & NODE_SLOT) != 0;
         if ((node.brick & NODE_FINAL) != 0 || (!goes_down && (!has_brick || !knows_children))) {
             add_(box);

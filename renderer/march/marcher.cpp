@@ -36,7 +36,12 @@ gl::Defines defines_of(const TreeShape& shape, bool has_color, const MarchOption
 
 /// Rays in windows begin their descents at the window's tiles, and the eye is never far from those.
 MarchOptions options_for(const TreeShape& shape, const MarchOptions& options) {
-    return shape.has_windows() ? MarchOptions{Traversal::restart, false} : options;
+    MarchOptions fitting = options;
+    if (shape.has_windows()) {
+        fitting.traversal = Traversal::restart;
+        fitting.block_starts = false;
+    }
+    return fitting;
 }
 
 }  // namespace
@@ -49,7 +54,12 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& opt
       defines_(defines_of(shape, has_color, options_)),
       view_(sizeof(interop::MarchView), "view"),
       shadow_ends_(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE * sizeof(float), "ends of shadow rays"),
-      queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
+      queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer"),
+      query_capacity_(std::uint32_t(options.query_capacity)) {
+    if (options.query_capacity < 1 || options.query_capacity > QUERY_CAPACITY) {
+        throw Error(Fault::usage, "tile queries", std::to_string(options.query_capacity) + " are no capacity",
+                    "choose between 1 and " + std::to_string(QUERY_CAPACITY));
+    }
     defines_.insert(defines_.end(), kind_.defines.begin(), kind_.defines.end());
     if (shape.has_windows())
         windows_ = gl::Buffer(window_header_bytes + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows");
@@ -211,8 +221,8 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     result.launched = mix_.proxy_span != 0 ? counters.launched : began ? primary : 0;
     result.waiting_primary = waiting_primary_ = counters.waiting_primary;
     result.waiting_shadow = waiting_shadow_ = counters.waiting_shadow;
-    result.queries = queries_.read_all<std::uint32_t>(std::min<std::size_t>(counters.queries, QUERY_CAPACITY),
-                                                      query_header_bytes);
+    result.queries =
+        queries_.read_all<std::uint32_t>(std::min(counters.queries, query_capacity_), query_header_bytes);
     if (kind != PassKind::patient)
         result.query_counts = queries_.read_all<std::uint32_t>(QUERY_COUNTS, query_counts_offset);
     result.brick_stamps = usage_.read_all<std::uint32_t>(std::size_t(pool.slot_count()));
@@ -234,6 +244,7 @@ void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool
     }
     program.set("shadow_list", list(1, list_side_ ^ 1));
     program.set("pass_number", round);
+    program.set("query_capacity", query_capacity_);
     program.set("usage_query_offset", query_bits_offset_);
     program.set("pool_slots", pool.slots());
     set_mix(program);

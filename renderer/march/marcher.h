@@ -14,6 +14,7 @@
 #include "renderer/march/traversal.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
+#include "shaders/interop/config.h"
 #include "shaders/interop/types.h"
 
 namespace cairn::renderer {
@@ -27,7 +28,8 @@ enum class PassKind : std::uint8_t {
 
 struct MarchOptions {
     Traversal traversal = Traversal::mini_stack;
-    bool block_starts = true;  ///< rays start at block_starts(), where there are any
+    bool block_starts = true;             ///< rays start at block_starts(), where there are any
+    int query_capacity = QUERY_CAPACITY;  ///< tiles that a pass can ask for, [1, QUERY_CAPACITY]
 };
 
 /// What one pass of rays came back with.
@@ -71,6 +73,7 @@ struct MarchKind {
 /// query buffer (Crassin et al. 2008, sections 5.1 to 5.3).
 class Marcher {
 public:
+    /// @throws Error (Fault::usage) for a query capacity that is none.
     Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
             const gl::ShaderSource& shaders, MarchKind kind = {});
 
@@ -134,6 +137,7 @@ private:
     std::size_t capacity_ = 0;  // pixels that the buffers hold
     std::uint32_t query_bits_offset_ = 0;
     std::uint32_t entry_count_ = 0;
+    std::uint32_t query_capacity_ = 0;
     std::uint32_t waiting_primary_ = 0;
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;

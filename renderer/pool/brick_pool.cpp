@@ -77,8 +77,19 @@ BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t byte
     size_bytes_ = std::size_t(slot_count_) * slot_bytes;
 }
 
+glm::ivec3 BrickPool::slot_place(int slot) const {
+    return {slot % slots_.x, slot / slots_.x % slots_.y, slot / (slots_.x * slots_.y)};
+}
+
 glm::ivec3 BrickPool::first_texel(int slot) const {
-    return glm::ivec3(slot % slots_.x, slot / slots_.x % slots_.y, slot / (slots_.x * slots_.y)) * side_;
+    return slot_place(slot) * side_;
+}
+
+std::vector<BrickPool::Layer> BrickPool::layers() const {
+    const Layer color = channels_.color ? Layer{color_.id(), GL_RGBA, GL_UNSIGNED_BYTE, side_, 4}
+                                        : Layer{color_.id(), GL_RED, GL_UNSIGNED_BYTE, side_, 1};
+    if (!channels_.normal) return {color};
+    return {color, {normal_.id(), GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, side_, 4}};
 }
 
 void BrickPool::bind_for_reading() const {

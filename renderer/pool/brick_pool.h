@@ -45,6 +45,23 @@ public:
     /// 64-bit words of masks a slot.
     [[nodiscard]] std::size_t mask_words() const { return mask_words_; }
 
+    /// A texture of the pool: every slot has a cube of `side` texels in it, at slot_place() * side.
+    struct Layer {
+        GLuint texture = 0;
+        GLenum format = 0;  ///< as pixels are transferred, bit for bit
+        GLenum type = 0;
+        int side = 0;
+        int texel_bytes = 0;
+    };
+    /// All that a slot holds, but for its masks.
+    [[nodiscard]] std::vector<Layer> layers() const;
+    [[nodiscard]] glm::ivec3 slot_place(int slot) const;
+    /// The masks of slot s start at byte s * mask_bytes_a_slot().
+    [[nodiscard]] const gl::Buffer& masks() const { return masks_; }
+    [[nodiscard]] std::size_t mask_bytes_a_slot() const {
+        return masks_.size_bytes() / std::size_t(slot_count_);
+    }
+
     /// For the marcher: sampled textures. For the producer: images and the mask buffer.
     void bind_for_reading() const;
     void bind_for_writing() const;

@@ -49,6 +49,7 @@ Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes,
     block_child_blocks_.resize(std::size_t(blocks_.count()), 0);
     block_birth_.resize(std::size_t(blocks_.count()), 0);
     slot_owner_.resize(std::size_t(brick_slots), none);
+    slot_tile_.resize(std::size_t(brick_slots));
     node_buffer_ = gl::Buffer(entry_total * sizeof(interop::NodeEntry), "node pool");
     node_buffer_.fill(0);
     node_texture_ = buffer_texture(GL_RGBA32UI, node_buffer_);
@@ -109,6 +110,7 @@ std::optional<std::uint32_t> Tree::add_children(std::uint32_t entry) {
         entries_[e] = interop::NodeEntry{};
         tiles_[e] = child_of(tiles_[entry], shape_.n, child);
         mark_dirty(e);
+        link_orphan(e);
     }
     entries_[entry].children = first;
     mark_dirty(entry);
@@ -122,16 +124,18 @@ void Tree::set_child_mask(std::uint32_t entry, glm::uvec2 mask) {
 
 std::optional<int> Tree::add_brick(std::uint32_t entry, bool may_stay) {
     pin_path(entry);
-    const int slot = take_slot();
+    const std::uint32_t stamp = may_stay ? round_ : std::max(keep_since_, 1U) - 1;
+    const int slot = take_slot(stamp);
     if (slot < 0) return std::nullopt;
-    bricks_.touch(slot, may_stay ? round_ : std::max(keep_since_, 1U) - 1);
+    bricks_.touch(slot, stamp);
     slot_owner_[std::size_t(slot)] = entry;
+    slot_tile_[std::size_t(slot)] = tiles_[entry];
     entries_[entry].brick |= std::uint32_t(slot) + 1;
     mark_dirty(entry);
     return slot;
 }
 
-int Tree::take_slot() {
+int Tree::take_slot(std::uint32_t limit) {
     if (const int slot = bricks_.take_free(); slot >= 0) return slot;
     if (!slots_sorted_) {
         old_slots_.clear();
@@ -144,8 +148,9 @@ int Tree::take_slot() {
     }
     while (!old_slots_.empty()) {
         const int slot = old_slots_.back();
+        if (is_old(bricks_.stamp(slot)) && bricks_.stamp(slot) >= limit) return -1;
         old_slots_.pop_back();
-        if (slot_owner_[std::size_t(slot)] == none || !is_old(bricks_.stamp(slot))) continue;
+        if (!is_old(bricks_.stamp(slot))) continue;
         evict_brick(slot);
         return bricks_.take_free();
     }
@@ -153,15 +158,21 @@ int Tree::take_slot() {
 }
 
 void Tree::evict_brick(int slot) {
+    if (records_evictions_) evicted_.push_back({slot_tile_[std::size_t(slot)], slot});
     release_slot(slot);
     ++counters_.bricks_evicted;
 }
 
 void Tree::release_slot(int slot) {
     const std::uint32_t owner = slot_owner_[std::size_t(slot)];
-    entries_[owner].brick &= ~NODE_SLOT;
-    mark_dirty(owner);
-    slot_owner_[std::size_t(slot)] = none;
+    const Tile& tile = slot_tile_[std::size_t(slot)];
+    if (owner == none) {
+        orphans_.erase(tile);
+    } else {
+        entries_[owner].brick &= ~NODE_SLOT;
+        mark_dirty(owner);
+        slot_owner_[std::size_t(slot)] = none;
+    }
     bricks_.release(slot);
 }
 
@@ -173,6 +184,26 @@ void Tree::set_constant(std::uint32_t entry, glm::u8vec4 mean) {
         throw Error(Fault::internal, "node pool", "a constant tile of content that was said to have none");
     means_[entry] = std::uint32_t(mean.x) | std::uint32_t(mean.y) << 8U | std::uint32_t(mean.z) << 16U |
                     std::uint32_t(mean.w) << 24U;
+}
+
+/// The brick of a node that goes stays in its slot, with what is known of the tile.
+void Tree::orphan_brick(std::uint32_t entry) {
+    const std::optional<int> held = slot(entry);
+    if (!held) return;
+    slot_owner_[std::size_t(*held)] = none;
+    orphans_.emplace(tiles_[entry], Orphan{*held, entries_[entry].brick & ~NODE_SLOT});
+}
+
+/// Gives a new node the brick that an earlier node of its tile left behind.
+void Tree::link_orphan(std::uint32_t entry) {
+    if (orphans_.empty()) return;
+    const auto orphan = orphans_.find(tiles_[entry]);
+    if (orphan == orphans_.end()) return;
+    const auto [held, flags] = orphan->second;
+    entries_[entry].brick = flags | (std::uint32_t(held) + 1);
+    slot_owner_[std::size_t(held)] = entry;
+    orphans_.erase(orphan);
+    ++counters_.bricks_relinked;
 }
 
 bool Tree::can_evict_block(int block) const {
@@ -207,9 +238,8 @@ int Tree::take_block() {
 
 void Tree::evict_block(int block) {
     const std::uint32_t first = std::uint32_t(block) * std::uint32_t(shape_.child_count());
-    for (std::uint32_t e = first; e < first + std::uint32_t(shape_.child_count()); ++e) {
-        if (const std::optional<int> held = slot(e)) evict_brick(*held);
-    }
+    for (std::uint32_t e = first; e < first + std::uint32_t(shape_.child_count()); ++e)
+        orphan_brick(e);
     const std::uint32_t parent = block_parent_[std::size_t(block)];
     entries_[parent].children = 0;
     mark_dirty(parent);

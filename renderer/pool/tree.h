@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,8 @@ namespace cairn::renderer {
 ///
 /// The node pool is an array of NodeEntry in blocks of n^3: the children of one tile. Block 0 holds the root
 /// alone, in its entry 0. Both stores are bounded and recycle what was not used for longest; a parent
-/// outlives its children.
+/// outlives its children. The bricks of nodes that go stay in their slots, as orphans, for as long as their
+/// own stamps let them: when their tiles come back, they are linked again.
 class Tree {
 public:
     /// @param root_mask    child_mask of the root tile.
@@ -44,7 +46,14 @@ public:
     [[nodiscard]] std::size_t size_bytes() const {
         return node_buffer_.size_bytes() + mean_buffer_.size_bytes();
     }
-    [[nodiscard]] int bricks_resident() const { return bricks_.used_count(); }
+    [[nodiscard]] int bricks_resident() const { return bricks_.used_count(); }  ///< orphans included
+
+    /// A brick whose node is gone.
+    struct Orphan {
+        int slot = 0;
+        std::uint32_t flags = 0;  ///< NODE_*, of the node
+    };
+    [[nodiscard]] const std::unordered_map<Tile, Orphan, TileHash>& orphans() const { return orphans_; }
 
     /// Starts a round; stamps what rays used in the pass before it, and their ancestors.
     /// @param brick_stamps  one a slot: the last round whose rays used it.
@@ -67,7 +76,8 @@ public:
 
     /// Gives the tile a slot for its brick, or none when all slots were given out in this round.
     /// @param may_stay  counts as used in this round; else as used just before keep_since(), so that it takes
-    ///                  the place of nothing that is needed now.
+    ///                  the place of nothing that is needed now. Such a brick only takes the place of what
+    ///                  was not used for longer: two of them never take turns.
     [[nodiscard]] std::optional<int> add_brick(std::uint32_t entry, bool may_stay = true);
 
     /// What a tile turned out to hold when it was produced. It stays known as long as the tile has its entry,
@@ -88,8 +98,19 @@ public:
     struct Counters {
         std::uint64_t bricks_evicted = 0;
         std::uint64_t nodes_evicted = 0;
+        std::uint64_t bricks_relinked = 0;  ///< that came back with their node, without being produced
     };
     [[nodiscard]] const Counters& counters() const { return counters_; }
+
+    /// A brick that lost its slot, whose texels are there until the slot's next brick is written.
+    struct Evicted {
+        Tile tile;
+        int slot = 0;
+    };
+    /// From now on, remember what was evicted. Off at first.
+    void record_evictions(bool record) { records_evictions_ = record; }
+    /// What was evicted since the last call, oldest first.
+    [[nodiscard]] std::vector<Evicted> take_evicted() { return std::exchange(evicted_, {}); }
 
 private:
     static constexpr std::uint32_t none = 0xFFFFFFFFU;
@@ -109,7 +130,8 @@ private:
     [[nodiscard]] bool is_old(std::uint32_t stamp) const {
         return stamp < round_ && (keep_since_ == 0 || stamp < keep_since_);
     }
-    [[nodiscard]] int take_slot();
+    /// One that was last used before `limit`, if none is free; -1: there is none.
+    [[nodiscard]] int take_slot(std::uint32_t limit);
     [[nodiscard]] int take_block();
     [[nodiscard]] bool can_evict_block(int block) const;
     void evict_brick(int slot);
@@ -118,6 +140,8 @@ private:
         entries_[entry].brick |= flags;
         mark_dirty(entry);
     }
+    void orphan_brick(std::uint32_t entry);
+    void link_orphan(std::uint32_t entry);
     void gather_old_block(int block);
     void evict_block(int block);
     void pin_path(std::uint32_t entry);
@@ -133,8 +157,12 @@ private:
     std::vector<std::uint32_t> block_parent_;  // entry whose children the block holds
     std::vector<int> block_child_blocks_;      // how many of its entries have children
     std::vector<std::uint32_t> block_birth_;   // the round that filled it
-    std::vector<std::uint32_t> slot_owner_;    // entry, or none
-    std::vector<int> old_slots_;               // of this round, oldest last
+    std::vector<std::uint32_t> slot_owner_;    // entry, or none: free, or an orphan's
+    std::vector<Tile> slot_tile_;              // of those that are not free
+    std::unordered_map<Tile, Orphan, TileHash> orphans_;
+    std::vector<Evicted> evicted_;
+    bool records_evictions_ = false;
+    std::vector<int> old_slots_;  // of this round, oldest last
     bool slots_sorted_ = false;
     /// Stamp and number of the blocks that may be taken away in this round: a heap, the oldest on top.
     std::vector<std::pair<std::uint32_t, int>> old_blocks_;

@@ -29,6 +29,7 @@ layout(binding = TEXTURE_BRICK_COLOR) uniform sampler3D brick_color;
 layout(binding = TEXTURE_BRICK_NORMAL) uniform sampler3D brick_normal;
 
 uniform uint pass_number;
+uniform uint query_capacity;      // at most QUERY_CAPACITY
 uniform uint usage_query_offset;  // word in usage[] where the query bits start
 uniform ivec3 pool_slots;         // slots along each axis of the pool's textures
 #if PROGRESSIVE
