@@ -44,6 +44,19 @@ MarchOptions options_for(const TreeShape& shape, const MarchOptions& options) {
     return fitting;
 }
 
+/// Pixels of the blocks that are in the picture.
+std::uint32_t pixels_of(const std::vector<interop::BlockStart>& starts, const glm::ivec2& size) {
+    const int blocks = (size.x + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE;
+    std::uint32_t pixels = 0;
+    for (const interop::BlockStart& start : starts) {
+        const glm::ivec2 low =
+            glm::ivec2(int(start.block) % blocks, int(start.block) / blocks) * PIXEL_BLOCK_SIDE;
+        const glm::ivec2 side = glm::min(size - low, PIXEL_BLOCK_SIDE);
+        pixels += std::uint32_t(side.x * side.y);
+    }
+    return pixels;
+}
+
 }  // namespace
 
 Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
@@ -139,6 +152,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         options_.block_starts ? block_starts(view, tree) : all_block_starts(view);
     if (mix.mesh_nearest != 0) add_empty_blocks(view, starts);
     start_count_ = starts.size();
+    first_rays_ = pixels_of(starts, size_);
     if (starts_.size_bytes() < starts.size() * sizeof(starts[0]))
         starts_ = gl::Buffer(capacity_ * sizeof(starts[0]), "block starts");
     starts_.write(0, starts.data(), starts.size() * sizeof(starts[0]));
@@ -218,7 +232,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     }
     PassResult result;
     result.stood_in = counters.stood_in;
-    result.launched = mix_.proxy_span != 0 ? counters.launched : began ? primary : 0;
+    result.launched = mix_.proxy_span != 0 ? counters.launched : began ? first_rays_ : 0;
     result.waiting_primary = waiting_primary_ = counters.waiting_primary;
     result.waiting_shadow = waiting_shadow_ = counters.waiting_shadow;
     result.queries =

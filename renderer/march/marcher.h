@@ -132,6 +132,7 @@ private:
     gl::Buffer image_;
     gl::Buffer starts_;
     std::size_t start_count_ = 0;
+    std::uint32_t first_rays_ = 0;  // pixels of the first pass
     MarchMix mix_;
     glm::ivec2 size_{0};
     std::size_t capacity_ = 0;  // pixels that the buffers hold
