@@ -60,6 +60,9 @@ void main() {
 gl::Program build(const renderer::TreeShape& shape) {
     gl::Defines defines = shape.defines(false);
     defines.emplace_back("PROGRESSIVE", "0");
+    defines.emplace_back("RAYS_WIDEN", "0");
+    defines.emplace_back("TRAVERSAL",
+                         std::to_string(shape.has_windows() ? TRAVERSAL_RESTART : TRAVERSAL_MINI_STACK));
     const std::string text = gl::ShaderSource().resolve("march/march.glsl", defines).text + probe_shader;
     const char* source = text.c_str();
     const gl::ShaderHandle shader(glCreateShader(GL_COMPUTE_SHADER));
@@ -142,6 +145,7 @@ void Prober::run(std::vector<Probe>& probes, const std::vector<renderer::Window>
         program_.set("probe_count", unsigned(probes.size()));
         program_.set("pass_number", round_);
         program_.set("usage_query_offset", unsigned(pool_.slot_count()));
+        program_.set("query_capacity", unsigned(QUERY_CAPACITY));
         program_.use();
         gl::dispatch_threads(probes.size(), 64);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
