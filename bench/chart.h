@@ -44,8 +44,9 @@ struct ChartKind {
 /// voxelize.png. Needs a current context. @throws Error as loading, voxelizing and writing do.
 [[nodiscard]] Chart chart_voxelize(const ChartOptions& options);
 
-/// A converged frame with hard shadows beside Embree's single rays: render.csv. Needs a current context.
-[[nodiscard]] Chart chart_render(const ChartOptions& options);
+/// Converged frames with hard shadows beside Embree's and NanoVDB's rays: embree.csv. Needs a current
+/// context.
+[[nodiscard]] Chart chart_embree(const ChartOptions& options);
 
 /// Writes `folder`/`name`, and adds it to the chart's files.
 void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,

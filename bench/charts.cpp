@@ -9,7 +9,7 @@ namespace cairn::bench {
 std::span<const ChartKind> charts() {
     static constexpr std::array all = {
         ChartKind{"voxelize", "methods and their peers, by time and error", chart_voxelize},
-        ChartKind{"render", "frames with hard shadows beside Embree's rays", chart_render},
+        ChartKind{"embree", "frames with hard shadows beside Embree's and NanoVDB's rays", chart_embree},
     };
     return all;
 }
