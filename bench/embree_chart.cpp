@@ -35,6 +35,7 @@ struct Contender {
 };
 
 double frame_ms(renderer::Renderer& renderer, const renderer::View& view) {
+    renderer.forget_picture();
     (void)renderer.render(view);
     return renderer.statistics().milliseconds;
 }

@@ -124,6 +124,17 @@ ImageTracer::ImageTracer(const scenes::Scene& scene, const scenes::Snapshot& sna
     : parts_(new Parts{TracedScene(scene, snapshot)}) {}
 ImageTracer::~ImageTracer() = default;
 
+bool ImageTracer::blocked(const glm::dvec3& from, const glm::dvec3& to) const {
+    const glm::dvec3 way = to - from;
+    const double length = glm::length(way);
+    const double gap = 1e-5 * parts_->scene.size;
+    if (!(length > 2.0 * gap)) return false;
+    RTCRay ray;
+    set_ray(ray, glm::vec3(from - parts_->scene.centre), glm::vec3(way / length), float(gap), float(length - gap));
+    occluded(parts_->scene.tree.get(), ray);
+    return ray.tfar < 0.0F;
+}
+
 double ImageTracer::build_milliseconds() const {
     return parts_->scene.build_milliseconds;
 }

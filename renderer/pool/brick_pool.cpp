@@ -44,12 +44,14 @@ glm::ivec3 box_of(int count, int most) {
 
 }  // namespace
 
-BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
-    : has_color_(has_color), side_(shape.m + 2) {
-    const std::size_t blocks = std::size_t(shape.m / 4) * std::size_t(shape.m / 4) * std::size_t(shape.m / 4);
+BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t bytes)
+    : channels_(channels), side_(shape.m + 2) {
+    const auto blocks = std::size_t(shape.blocks());
     const std::size_t mask_words = blocks + (blocks + 63) / 64;
     const std::size_t texels = std::size_t(side_) * std::size_t(side_) * std::size_t(side_);
-    const std::size_t slot_bytes = texels * (has_color ? 8 : 5) + mask_words * 8;
+    const std::size_t texel_bytes = (channels.color ? 4U : 1U) + (channels.normal ? 4U : 0U);
+    const std::size_t slot_bytes = texels * texel_bytes + mask_words * 8;
+    mask_words_ = mask_words;
     const gl::Limits limits = gl::query_limits();
     const int most_a_side = limits.texture_3d_size / side_;
     const std::size_t most_masks =
@@ -65,8 +67,8 @@ BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
     slot_count_ = slots_.x * slots_.y * slots_.z;
 
     const glm::ivec3 size = slots_ * side_;
-    color_ = make_texture(has_color ? GL_RGBA8 : GL_R8, size, GL_NEAREST);
-    normal_ = make_texture(GL_RGB10_A2, size, GL_NEAREST);
+    color_ = make_texture(channels.color ? GL_RGBA8 : GL_R8, size, GL_NEAREST);
+    if (channels.normal) normal_ = make_texture(GL_RGB10_A2, size, GL_NEAREST);
     masks_ = gl::Buffer(std::size_t(slot_count_) * mask_words * 8, "brick masks");
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
@@ -75,8 +77,19 @@ BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
     size_bytes_ = std::size_t(slot_count_) * slot_bytes;
 }
 
+glm::ivec3 BrickPool::slot_place(int slot) const {
+    return {slot % slots_.x, slot / slots_.x % slots_.y, slot / (slots_.x * slots_.y)};
+}
+
 glm::ivec3 BrickPool::first_texel(int slot) const {
-    return glm::ivec3(slot % slots_.x, slot / slots_.x % slots_.y, slot / (slots_.x * slots_.y)) * side_;
+    return slot_place(slot) * side_;
+}
+
+std::vector<BrickPool::Layer> BrickPool::layers() const {
+    const Layer color = channels_.color ? Layer{color_.id(), GL_RGBA, GL_UNSIGNED_BYTE, side_, 4}
+                                        : Layer{color_.id(), GL_RED, GL_UNSIGNED_BYTE, side_, 1};
+    if (!channels_.normal) return {color};
+    return {color, {normal_.id(), GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, side_, 4}};
 }
 
 void BrickPool::bind_for_reading() const {
@@ -87,9 +100,24 @@ void BrickPool::bind_for_reading() const {
 
 void BrickPool::bind_for_writing() const {
     glBindImageTexture(IMAGE_BRICK_COLOR, color_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
-                       has_color_ ? GL_RGBA8 : GL_R8);
-    glBindImageTexture(IMAGE_BRICK_NORMAL, normal_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGB10_A2);
+                       channels_.color ? GL_RGBA8 : GL_R8);
+    if (channels_.normal)
+        glBindImageTexture(IMAGE_BRICK_NORMAL, normal_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGB10_A2);
     masks_.bind_storage(SSBO_BRICK_MASKS);
+}
+
+void BrickPool::upload(int slot, const gl::Buffer& texels, std::size_t offset_bytes,
+                       std::span<const std::uint64_t> masks) const {
+    const glm::ivec3 texel = first_texel(slot);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, texels.id());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    // With a buffer bound, the pointer is an offset in it.
+    glTextureSubImage3D(color_.id(), 0, texel.x, texel.y, texel.z, side_, side_, side_, GL_RED,
+                        GL_UNSIGNED_BYTE, reinterpret_cast<const void*>(offset_bytes));
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glNamedBufferSubData(masks_.id(), GLintptr(std::size_t(slot) * mask_words_ * 8),
+                         GLsizeiptr(masks.size_bytes()), masks.data());
 }
 
 }  // namespace cairn::renderer

@@ -1,6 +1,7 @@
 #include "renderer/produce/surface_producer.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "renderer/produce/tile_lists.h"
 #include "shaders/interop/bindings.h"
@@ -22,17 +23,28 @@ std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
     return side * side * side * (has_color ? 9 : 6) * sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
 }
 
+/// The rows that lattice coordinates lie in, of voxels of that side: rounded down.
+glm::ivec2 row_of(const glm::ivec2& place, int voxel) {
+    const glm::ivec2 cut = place / voxel;
+    return cut - glm::ivec2(glm::lessThan(place, cut * voxel));
+}
+
 }  // namespace
 
 SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface,
                                  voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders)
-    : shape_(shape), surface_(surface), lists_(lists), pairs_(surface.chunks.size()) {
+    : shape_(shape),
+      surface_(surface),
+      lists_(lists),
+      tell_empty_(shape.cell_base() != 2 || surface.has_mask),
+      pairs_(surface.chunks.size()) {
     const std::size_t brick_bytes = scratch_bytes_a_brick(shape, surface.has_color);
     batch_ = int(std::clamp<std::size_t>(scratch_budget_bytes / brick_bytes, 1, 0xFFFF));
     gl::Defines defines = shape.defines(surface.has_color);
     masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
-    summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
     resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
+    defines.emplace_back("TELL_EMPTY", tell_empty_ ? "1" : "0");
+    summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
     defines.emplace_back("HAS_MASK", surface.has_mask ? "1" : "0");
     splat_ = gl::build_compute(shaders, "produce/splat.comp.glsl", defines);
 
@@ -43,15 +55,23 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     for (gl::Program* program : {&splat_, &resolve_})
         program->set("sums_offset", unsigned(std::size_t(batch_) * side * side * side * 2));
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
+    if (tell_empty_)
+        found_ = gl::Buffer(std::size_t(batch_) * sizeof(std::uint32_t), "bricks that hold anything");
     pair_buffer_ = gl::Buffer(pair_capacity * sizeof(interop::BrickPair), "brick pairs");
 }
 
 std::vector<Produced> SurfaceProducer::produce(std::span<const BrickRequest> requests,
                                                const BrickPool& pool) {
+    std::vector<Produced> produced(requests.size());
     for (std::size_t i = 0; i < requests.size(); i += std::size_t(batch_)) {
-        produce_batch(requests.subspan(i, std::min(std::size_t(batch_), requests.size() - i)), pool);
+        const std::size_t count = std::min(std::size_t(batch_), requests.size() - i);
+        produce_batch(requests.subspan(i, count), pool);
+        if (!tell_empty_) continue;
+        const auto found = found_.read_all<std::uint32_t>(count);
+        for (std::size_t k = 0; k < count; ++k)
+            produced[i + k].constant = found[k] == 0;
     }
-    return std::vector<Produced>(requests.size());
+    return produced;
 }
 
 void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
@@ -62,15 +82,14 @@ void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
     const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
     for (std::size_t i = 0; i < requests.size(); ++i) {
         const Tile& tile = requests[i].tile;
-        const int shift = LATTICE_BITS - shape_.voxel_level(tile.level);
+        const int voxel = shape_.voxel_side(tile.level);
         const glm::ivec2 low = glm::ivec2(tile.position.y, tile.position.z) * shape_.m - 1;  // of the border
-        for (const std::uint32_t triangle : lists_.list(cell_of(tile, shape_))) {
+        for (const std::uint32_t triangle : triangles_of(tile, shape_, lists_, listed_)) {
             // Row r is touched when [r, r + 1] meets the triangle's extent: one more on each side of whole
             // numbers.
             const voxelizer::TriangleIndex::Box& box = lists_.box(triangle);
-            const glm::ivec2 first = glm::max(((glm::ivec2(box.low.y, box.low.z) - 1) >> shift) - low, 0);
-            const glm::ivec2 last =
-                glm::min((glm::ivec2(box.high.y, box.high.z) >> shift) - low, shape_.m + 1);
+            const glm::ivec2 first = glm::max(row_of({box.low.y - 1, box.low.z - 1}, voxel) - low, 0);
+            const glm::ivec2 last = glm::min(row_of({box.high.y, box.high.z}, voxel) - low, shape_.m + 1);
             for (int z = first.y; z <= last.y; z += step.y) {
                 for (int y = first.x; y <= last.x; y += step.x) {
                     const auto y_count = std::uint32_t(std::min(step.x, last.x - y + 1));
@@ -104,8 +123,9 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     std::vector<interop::BrickTile> tiles;
     tiles.reserve(requests.size());
     for (const BrickRequest& request : requests) {
-        const int shift = LATTICE_BITS - shape_.voxel_level(request.tile.level);
-        tiles.push_back({glm::ivec4(glm::ivec3(request.tile.position) * shape_.m, shift),
+        const int side = shape_.voxel_side(request.tile.level);
+        const int size = shape_.cell_base() == 2 ? int(std::bit_width(unsigned(side))) - 1 : side;
+        tiles.push_back({glm::ivec4(glm::ivec3(request.tile.position) * shape_.m, size),
                          glm::ivec4(pool.first_texel(request.slot), request.slot)});
     }
     tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::BrickTile));
@@ -114,12 +134,21 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     for (std::size_t chunk = 0; chunk < pairs_.size(); ++chunk)
         splat(chunk);
 
-    const auto count = unsigned(requests.size());
-    const auto blocks = std::size_t(shape_.m / 4) * std::size_t(shape_.m / 4) * std::size_t(shape_.m / 4);
+    pack(requests.size(), pool);
+}
+
+/// Turns what was gathered for the batch into bricks.
+void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
+    const auto count = unsigned(tile_count);
+    const auto blocks = std::size_t(shape_.blocks());
     const auto side = std::size_t(shape_.m) + 2;
     tiles_.bind_storage(SSBO_BRICK_TILES);
     scratch_.bind_storage(SSBO_BRICK_SCRATCH);
     pool.bind_for_writing();
+    if (tell_empty_) {
+        found_.fill(0);
+        found_.bind_storage(SSBO_BRICK_FOUND);
+    }
     auto run = [&](const gl::Program& program, std::size_t threads) {
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
         program.use();

@@ -5,8 +5,10 @@ vec3 level_color(int level) {
     return 0.5 + 0.5 * cos(LEVEL_HUE * float(level) + phase);
 }
 
+int first_level = 0;  // of the cube that descents start from
+
 int level_of(Sample s) {
-    return (ROOT_SHIFT - M_SHIFT - findMSB(uint(s.side))) / N_SHIFT;
+    return first_level + (ROOT_SHIFT - M_SHIFT - int(round(log2(s.side) / log2(float(CELL_BASE))))) / N_SHIFT;
 }
 
 // Is the sample near where the surface leaves its brick? A side that the surface runs along does not count: it would be

@@ -1,4 +1,5 @@
-// One thread is one block of 4^3 voxels of a new brick: it packs their occupancy into the 64-bit mask that rays skip by.
+// One thread is one block of voxels of a new brick: it packs their occupancy into the 64-bit mask that rays skip by.
+// defines: BRICK_M=27 HAS_COLOR=1
 // defines: BRICK_M=16 HAS_COLOR=1
 // defines: BRICK_M=8 HAS_COLOR=0
 #include "produce/scratch.glsl"
@@ -15,16 +16,17 @@ void main() {
     if (i >= tile_count * uint(BLOCKS)) return;
     const uint tile = i / uint(BLOCKS);
     const int block = int(i % uint(BLOCKS));
-    const ivec3 low = 4 * ivec3(block % BLOCKS_A_SIDE, block / BLOCKS_A_SIDE % BLOCKS_A_SIDE,
-                                block / (BLOCKS_A_SIDE * BLOCKS_A_SIDE));
+    const ivec3 low = BLOCK_SIDE * ivec3(block % BLOCKS_A_SIDE, block / BLOCKS_A_SIDE % BLOCKS_A_SIDE,
+                                         block / (BLOCKS_A_SIDE * BLOCKS_A_SIDE));
     uvec2 mask = uvec2(0u);
-    for (int z = 0; z < 4; ++z) {
-        for (int y = 0; y < 4; ++y) {
-            for (int x = 0; x < 4; ++x) {
+    for (int z = 0; z < BLOCK_SIDE; ++z) {
+        for (int y = 0; y < BLOCK_SIDE; ++y) {
+            for (int x = 0; x < BLOCK_SIDE; ++x) {
                 const uint voxel = scratch_voxel(tile, low + ivec3(x, y, z) + 1);
                 const uint bit = (scratch[2u * voxel] | scratch[2u * voxel + 1u]) != 0u ? 1u : 0u;
-                if (z < 2) mask.x |= bit << (x + 4 * y + 16 * z);
-                else mask.y |= bit << (x + 4 * y + 16 * (z - 2));
+                const int place = x + BLOCK_SIDE * (y + BLOCK_SIDE * z);
+                if (place < 32) mask.x |= bit << place;
+                else mask.y |= bit << (place - 32);
             }
         }
     }

@@ -1,12 +1,18 @@
-// One thread is one summary word of a new brick: which of 64 blocks are not empty.
-// defines: BRICK_M=16 HAS_COLOR=1
-// defines: BRICK_M=8 HAS_COLOR=0
+// One thread is one summary word of a new brick: which of 64 blocks are not empty. With TELL_EMPTY, where the
+// oracle is not exact, it also tells whether there is anything in the tile at all.
+// defines: BRICK_M=16 HAS_COLOR=1 TELL_EMPTY=0
+// defines: BRICK_M=8 HAS_COLOR=0 TELL_EMPTY=1
+// defines: BRICK_M=81 HAS_COLOR=0 TELL_EMPTY=1
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
+
+#if TELL_EMPTY
+layout(std430, binding = SSBO_BRICK_FOUND) buffer FoundBlock { uint found[]; };
+#endif
 
 uniform uint tile_count;
 
@@ -24,4 +30,7 @@ void main() {
         else summary.y |= full << (bit - 32u);
     }
     brick_masks[first + word] = summary;
+#if TELL_EMPTY
+    if ((summary.x | summary.y) != 0u) atomicOr(found[i / uint(SUMMARY_WORDS)], 1u);
+#endif
 }
