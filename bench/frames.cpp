@@ -19,14 +19,15 @@ namespace {
 constexpr double shell_inner = 0.25;
 constexpr double shell_outer = 0.30;
 constexpr std::int64_t copy_resolution = 256;
-/// Of the densest, along the whole of the volume (a copy, where there are several): the shell is opaque.
-constexpr double optical_depth = 200.0;
+/// Of the densest, through a finest voxel: so solids are opaque after a few, however fine they are.
+constexpr double optical_depth = 1.0;
+/// What does not show of a scan, as a share of its densities.
 constexpr double scan_empty = 0.3;
 
 /// @param empty  density that does not show; 0 where voxels that are coarse and thin are to show as such.
-renderer::TransferFunction opaque(double empty, double side) {
+renderer::TransferFunction opaque(double empty, double voxel_size) {
     return renderer::TransferFunction(
-        {{empty, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), optical_depth / side}});
+        {{empty, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), optical_depth / voxel_size}});
 }
 
 /// A field elsewhere.
@@ -86,8 +87,9 @@ Cell Subject::triangles() const {
 renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders) const {
     if (data_->scene) return {*data_->scene, *data_->snapshot, tree, shaders};
     if (data_->volume) {
-        const double side = glm::length(bounds_.high - bounds_.low);
-        return {*data_->volume, opaque(scan_empty, side), tree, {}, shaders};
+        const glm::dvec3& spacing = data_->volume->spacing;
+        const double voxel_size = std::min({spacing.x, spacing.y, spacing.z});
+        return {*data_->volume, opaque(scan_empty, voxel_size), tree, {}, shaders};
     }
     const std::int64_t resolution = renderer::tree_shape_of(tree).resolution();
     const int copies = data_->is_repeated ? int(std::max<std::int64_t>(resolution / copy_resolution, 1)) : 1;
@@ -98,7 +100,7 @@ renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::Sh
         const auto repeated = std::make_shared<renderer::RepeatedField>(std::move(field), copies);
         field = std::make_shared<Moved>(repeated, bounds_.low);
     }
-    return {std::move(field), opaque(0.0, side), tree, {}, shaders};
+    return {std::move(field), opaque(0.0, 1.0 / double(resolution)), tree, {}, shaders};
 }
 
 renderer::View Subject::view(int width, int height) const {

@@ -82,7 +82,8 @@ public:
                      10, 1.0 - 48.0 / height);
         out +=
             "set logscale xy\nset format x \"%g\"\nset format y \"%g\"\nset grid lc \"#e4e4e4\" lt 1\n"
-            "set border lc \"#888888\"\nset tics nomirror\nset offsets graph 0.05,0.08,0.05,0.05\n"
+            "set border lc \"#888888\"\nset tics nomirror\nset offsets graph 0.05,graph 0.08,graph "
+            "0.05,graph 0.05\n"
             "set xlabel \"milliseconds\" offset 0,0.3\n";
         for (const std::string& scene : scenes_) {
             out += panel(scene, 0);

@@ -1,4 +1,6 @@
 // The same view of ever finer voxels: what a converged frame costs, and what the pools hold.
+#include <memory>
+
 #include "bench/chart.h"
 #include "bench/frames.h"
 #include "bench/samples.h"
@@ -12,24 +14,34 @@ constexpr int picture = 512;
 /// A second view through a narrow lens from the same place, whose pixels see voxels so much finer.
 constexpr double narrowed = 16.0;
 
-void measure(const Subject& subject, const std::vector<int>& resolutions, bool near,
-             const ChartOptions& options, Chart& chart) {
-    std::vector<Entrant> entrants;
+using Renderers = std::vector<std::shared_ptr<renderer::Renderer>>;
+
+Renderers renderers_of(const Subject& subject, const std::vector<int>& resolutions,
+                       const gl::ShaderSource& shaders) {
+    Renderers made;
     for (const int resolution : resolutions) {
         renderer::TreeOptions finer = tree;
         finer.max_resolution = resolution;
-        renderer::View view = subject.view(picture, picture);
-        if (near) view.camera.yfov /= narrowed;
-        entrants.emplace_back(subject.make(finer, options.shaders), view);
+        made.push_back(std::make_shared<renderer::Renderer>(subject.make(finer, shaders)));
     }
-    measure_in_turn(entrants, options.runs);
+    return made;
+}
+
+void measure(const Subject& subject, const Renderers& renderers, const std::vector<int>& resolutions,
+             bool near, int runs, Table& table) {
+    renderer::View view = subject.view(picture, picture);
+    if (near) view.camera.yfov /= narrowed;
+    std::vector<Entrant> entrants;
+    for (const auto& ours : renderers)
+        entrants.emplace_back(ours, view);
+    measure_in_turn(entrants, runs);
     for (std::size_t i = 0; i < entrants.size(); ++i) {
         const Entrant& entrant = entrants[i];
         std::vector<double> growth;
         for (std::size_t run = 0; run < entrant.samples_ms.size(); ++run)
             growth.push_back(entrant.samples_ms[run] / entrants.front().samples_ms[run]);
         const renderer::FrameStatistics& s = entrant.converged;
-        chart.table.rows.push_back(
+        table.rows.push_back(
             on_this_machine({subject.name(), std::string(near ? "near" : "whole"),
                              std::int64_t(resolutions[i]), median(entrant.samples_ms), median(growth),
                              entrant.first_ms, std::int64_t(entrant.first.bricks_produced),
@@ -54,8 +66,9 @@ Chart chart_resolution(const ChartOptions& options) {
     double done = 0.0;
     for (const std::string& scene : scenes) {
         const Subject subject(scene);
+        const Renderers renderers = renderers_of(subject, resolutions, options.shaders);
         for (const bool near : {false, true}) {
-            measure(subject, resolutions, near, options, chart);
+            measure(subject, renderers, resolutions, near, options.runs, chart.table);
             done += 0.5 / double(scenes.size());
             if (options.progress) options.progress(done);
         }

@@ -5,6 +5,9 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
 #include "bench/chart.h"
 #include "bench/frames.h"
 #include "bench/regular_grid.h"
@@ -17,7 +20,7 @@ namespace {
 constexpr int picture = 256;
 constexpr double inner = 0.25;
 constexpr double outer = 0.30;
-constexpr double extinction = 200.0;  // the shell is opaque
+constexpr double optical_depth = 1.0;  // of density 1, through a voxel: opaque after a few
 /// Along the axis through the middle of the cube [0, 1]^3, looking at larger ones.
 constexpr std::array places = {0.5, 0.0, -0.5, -1.0};
 constexpr double place_of_shapes = -0.5;
@@ -44,20 +47,22 @@ public:
         : options_(options),
           resolution_(resolution),
           chart_(chart),
-          grid_(renderer::HollowSphere(2, resolution, inner, outer, 1.0), extinction) {}
+          grid_(renderer::HollowSphere(2, resolution, inner, outer, 1.0), optical_depth * resolution) {}
 
     void at_places() {
+        constexpr std::array traversals = {renderer::Traversal::restart, renderer::Traversal::stackless,
+                                           renderer::Traversal::mini_stack};
+        const int m = least_m();
+        std::vector<std::shared_ptr<renderer::Renderer>> made;
+        for (const auto traversal : traversals)
+            made.push_back(std::make_shared<renderer::Renderer>(make(4, m, traversal)));
         for (const double place : places) {
             const renderer::View view = view_from(place);
             std::vector<Entrant> entrants;
-            for (const auto traversal : {renderer::Traversal::restart, renderer::Traversal::stackless,
-                                         renderer::Traversal::mini_stack}) {
-                // Of N = 4, the least M that gives this resolution.
-                for (const int m : {8, 16, 32, 64}) {
-                    if (!fits(4, m)) continue;
-                    entrants.emplace_back(make(4, m, traversal), view);
-                    break;
-                }
+            shapes_.clear();
+            for (std::size_t i = 0; i < made.size(); ++i) {
+                shapes_.push_back({4, m, traversals[i]});
+                entrants.emplace_back(made[i], view);
             }
             run(entrants, view, place, "place");
         }
@@ -69,7 +74,10 @@ public:
         shapes_.clear();
         for (const int n : {2, 4, 8}) {
             for (const int m : {8, 16, 32, 64}) {
-                if (fits(n, m)) entrants.emplace_back(make(n, m, renderer::Traversal::mini_stack), view);
+                // Without levels, N says nothing.
+                if (!fits(n, m) || (m == resolution_ && n > 2)) continue;
+                shapes_.push_back({n, m, renderer::Traversal::mini_stack});
+                entrants.emplace_back(make(n, m, renderer::Traversal::mini_stack), view);
             }
         }
         run(entrants, view, place_of_shapes, "shape");
@@ -84,17 +92,23 @@ private:
     [[nodiscard]] bool fits(int n, int m) const {
         return m <= resolution_ && renderer::tree_shape_of(options_of(n, m)).resolution() == resolution_;
     }
+    /// With N = 4.
+    [[nodiscard]] int least_m() const {
+        for (const int m : {8, 16, 32, 64})
+            if (fits(4, m)) return m;
+        throw Error(Fault::usage, "--resolutions", fmt::format("no tree has {} voxels a side", resolution_),
+                    "choose powers of two from 8 to 32768");
+    }
     [[nodiscard]] renderer::TreeOptions options_of(int n, int m) const {
         return {.n = n, .m = m, .max_resolution = resolution_, .brick_pool_bytes = 64U << 20U};
     }
 
-    renderer::Renderer make(int n, int m, renderer::Traversal traversal) {
-        shapes_.push_back({n, m, traversal});
+    [[nodiscard]] renderer::Renderer make(int n, int m, renderer::Traversal traversal) const {
         renderer::TreeOptions options = options_of(n, m);
         options.traversal = traversal;
         const auto field = std::make_shared<renderer::HollowSphere>(n, resolution_, inner, outer, 1.0);
         const renderer::TransferFunction transfer(
-            {{0.0, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), extinction}});
+            {{0.0, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), optical_depth * resolution_}});
         return {field, transfer, options, {.full_gradient = 0.0}, options_.shaders};
     }
 
@@ -118,7 +132,6 @@ private:
                 std::int64_t(renderer::tree_shape_of(options_of(shape.n, shape.m)).max_level),
                 median(entrants[i].samples_ms), median(ratios), difference(entrants[i].image, grid.alpha));
         }
-        shapes_.clear();
     }
 
     void add(const char* varied, double place, const char* method, Cell n, Cell m, Cell depth, double ms,
