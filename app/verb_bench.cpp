@@ -18,7 +18,7 @@ namespace cairn::app {
 namespace {
 
 constexpr int max_runs = 1000;
-constexpr int max_bench_resolution = 4096;
+constexpr int max_bench_resolution = 32768;
 
 struct Options {
     std::string chart;
@@ -71,8 +71,7 @@ void add_options(CLI::App& verb, Options& options) {
     verb.add_option("--scene", options.what.scenes, "only this scene; may be given again")
         ->type_name("SCENE")
         ->allow_extra_args(false);
-    add_parsed_option(verb, "--resolutions", "N,...",
-                      "voxels a side, or pixels (default: 128,256,512,1024;\nrender: 512)",
+    add_parsed_option(verb, "--resolutions", "N,...", "voxels a side, or pixels (default: the chart's own)",
                       [&options](const std::string& text) { options.what.resolutions = sizes_of(text); });
     add_parsed_option(
         verb, "--runs", "N", "medians are of so many runs, or fewer if slow (default: 7)",

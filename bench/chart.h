@@ -44,8 +44,25 @@ struct ChartKind {
 /// voxelize.png. Needs a current context. @throws Error as loading, voxelizing and writing do.
 [[nodiscard]] Chart chart_voxelize(const ChartOptions& options);
 
-/// A converged frame with hard shadows beside Embree's single rays: render.csv. Needs a current context.
+/// Converged frames with hard shadows beside Embree's and NanoVDB's rays: embree.csv. Needs a current
+/// context.
+[[nodiscard]] Chart chart_embree(const ChartOptions& options);
+
+/// Converged frames by time and by error against Embree with 64 samples a pixel: render.csv and render.png.
+/// Needs a current context, as the others do.
 [[nodiscard]] Chart chart_render(const ChartOptions& options);
+
+/// The same view of ever more voxels: resolution.csv.
+[[nodiscard]] Chart chart_resolution(const ChartOptions& options);
+
+/// Crassin 2007, Figures 3.24 and 3.26: structure.csv.
+[[nodiscard]] Chart chart_structure(const ChartOptions& options);
+
+/// Crassin et al. 2008, Figure 7: exploration.csv.
+[[nodiscard]] Chart chart_exploration(const ChartOptions& options);
+
+/// What first frames produce, and what of it is used: production.csv.
+[[nodiscard]] Chart chart_production(const ChartOptions& options);
 
 /// Writes `folder`/`name`, and adds it to the chart's files.
 void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,

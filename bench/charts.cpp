@@ -9,7 +9,12 @@ namespace cairn::bench {
 std::span<const ChartKind> charts() {
     static constexpr std::array all = {
         ChartKind{"voxelize", "methods and their peers, by time and error", chart_voxelize},
-        ChartKind{"render", "frames with hard shadows beside Embree's rays", chart_render},
+        ChartKind{"embree", "frames with shadows beside Embree's and NanoVDB's rays", chart_embree},
+        ChartKind{"render", "frames by time and error, over pixel error and tree", chart_render},
+        ChartKind{"resolution", "the same view of 512^3 to 32768^3 voxels", chart_resolution},
+        ChartKind{"structure", "N and M, and a regular grid, on a hollow sphere", chart_structure},
+        ChartKind{"exploration", "frames at three distances, and on the way there", chart_exploration},
+        ChartKind{"production", "bricks that a first frame produces, and uses", chart_production},
     };
     return all;
 }

@@ -9,6 +9,7 @@
 #include "bench/chart.h"
 #include "bench/contenders.h"
 #include "bench/gnuplot.h"
+#include "bench/real_scenes.h"
 #include "bench/samples.h"
 #include "bench/voxelize_plot.h"
 #include "gl/context.h"
@@ -47,8 +48,7 @@ public:
                  const std::function<void()>& done) {
         const scenes::Scene scene = scenes::load(name);
         const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
-        const std::string label = name.starts_with("builtin:") ? name.substr(name.find(':') + 1)
-                                                               : std::filesystem::path(name).stem().string();
+        const std::string label = scene_name(name);
         last_ms_.clear();
         row_spans_exact_ = false;
         for (const int resolution : resolutions) {
@@ -167,35 +167,16 @@ private:
     bool row_spans_exact_ = false;
 };
 
-/// Where Debian's assimp-testmodels has it.
-constexpr const char* engine =
-    "/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb";
-
-std::vector<std::string> own_choice(const ChartOptions& options, std::vector<std::string>& notes) {
-    std::vector<std::string> scenes{"builtin:knot", "builtin:spheres", "builtin:tree", "builtin:needles"};
-    std::vector<std::filesystem::path> real{engine};
-    if (options.scene_folder) {
-        real.insert(real.begin(), *options.scene_folder / "stanford_bunny_69k.glb");
-    } else {
-        notes.emplace_back("the Stanford bunny is left out: no --scenes folder was given");
-    }
-    for (const std::filesystem::path& path : real) {
-        if (std::filesystem::exists(path)) {
-            scenes.push_back(path.string());
-        } else {
-            notes.push_back(path.string() + " is not there, and left out");
-        }
-    }
-    return scenes;
-}
-
 }  // namespace
 
 Chart chart_voxelize(const ChartOptions& options) {
     Chart chart;
     chart.notes = Contenders::absent();
-    const std::vector<std::string> scenes =
-        options.scenes.empty() ? own_choice(options, chart.notes) : options.scenes;
+    std::vector<std::string> scenes = options.scenes;
+    if (scenes.empty()) {
+        scenes = {"builtin:knot", "builtin:spheres", "builtin:tree", "builtin:needles"};
+        add_real_scenes(chart, options, {"stanford_bunny_69k.glb", engine_path}, scenes);
+    }
     std::vector<int> resolutions =
         options.resolutions.empty() ? std::vector<int>{128, 256, 512, 1024} : options.resolutions;
     std::sort(resolutions.begin(), resolutions.end());

@@ -19,6 +19,19 @@ inline void intersect(RTCScene scene, RTCRayHit& hit) {
 inline void occluded(RTCScene scene, RTCRay& ray) {
     rtcOccluded1(scene, &ray);
 }
+/// Eight rays that go nearly the same way; `valid` holds -1 for each that counts.
+inline void intersect8(const int* valid, RTCScene scene, RTCRayHit8& hits) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &hits, &arguments);
+}
+inline void occluded8(const int* valid, RTCScene scene, RTCRay8& rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcOccluded8(valid, scene, &rays, &arguments);
+}
 #else
 inline void intersect(RTCScene scene, RTCRayHit& hit) {
     RTCIntersectContext context;
@@ -29,6 +42,19 @@ inline void occluded(RTCScene scene, RTCRay& ray) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene, &context, &ray);
+}
+/// Eight rays that go nearly the same way; `valid` holds -1 for each that counts.
+inline void intersect8(const int* valid, RTCScene scene, RTCRayHit8& hits) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &context, &hits);
+}
+inline void occluded8(const int* valid, RTCScene scene, RTCRay8& rays) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccluded8(valid, scene, &context, &rays);
 }
 #endif
 

@@ -1,6 +1,6 @@
 #include "reference/image.h"
 
-#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -8,250 +8,221 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include "base/error.h"
-#include "reference/embree.h"
+#include "reference/traced_scene.h"
 
 namespace cairn::reference {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr float infinite = std::numeric_limits<float>::infinity();
+/// Pixels of a packet: 4 x 2.
+constexpr int packet_width = 4;
+constexpr int packet_rays = 8;
+
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// The texel of an image that a coordinate falls on, by glTF's wrap modes.
-int wrapped(double coordinate, int size, scenes::Wrap wrap) {
-    if (wrap == scenes::Wrap::clamp_to_edge)
-        return int(std::clamp(std::floor(coordinate * size), 0.0, size - 1.0));
-    double unit = coordinate - std::floor(coordinate);
-    const bool odd = std::fmod(std::abs(std::floor(coordinate)), 2.0) == 1.0;
-    if (wrap == scenes::Wrap::mirrored_repeat && odd) unit = 1.0 - unit;
-    return std::min(int(unit * size), size - 1);
-}
+/// One picture's worth of rays.
+struct Work {
+    const TracedScene& scene;
+    PictureRays rays;
+    ReferenceImage& image;
 
-/// A masked primitive, as its rays ask about it.
-struct MaskedPrimitive {
-    const scenes::Primitive* primitive = nullptr;
-    const scenes::Material* material = nullptr;
-    const scenes::Texture* texture = nullptr;  ///< or null
-    const scenes::Image* image = nullptr;
+    [[nodiscard]] std::size_t pixel(int x, int y) const {
+        return std::size_t(y) * std::size_t(image.width) + std::size_t(x);
+    }
 
-    [[nodiscard]] bool is_surface(unsigned triangle, float u, float v) const {
-        const std::uint32_t* const corner = &primitive->indices[std::size_t(triangle) * 3];
-        const glm::vec3 weights(1.0F - u - v, u, v);
-        const auto at = [&](const auto& values, auto zero) {
-            for (int i = 0; i < 3; ++i)
-                zero += weights[i] * decltype(zero)(values[corner[i]]);
-            return zero;
-        };
-        float alpha = material->base_color.a;
-        if (!primitive->colors.empty()) alpha *= at(primitive->colors, glm::vec4(0.0F)).a / 255.0F;
-        if (image != nullptr) {
-            const glm::vec2 own =
-                primitive->texcoords.empty() ? glm::vec2(0.0F) : at(primitive->texcoords, glm::vec2(0.0F));
-            const glm::vec3 uv = material->uv_from_mesh * glm::vec3(own, 1.0F);
-            const int x = wrapped(uv.x, image->width, texture->wrap_s);
-            const int y = wrapped(uv.y, image->height, texture->wrap_t);
-            alpha *=
-                float(image->rgba[4 * (std::size_t(y) * std::size_t(image->width) + std::size_t(x)) + 3]) /
-                255.0F;
+    void trace_row(int y) const {
+        for (int x = 0; x < image.width; ++x) {
+            const glm::dvec3 direction = rays.direction({x + 0.5, y + 0.5});
+            RTCRayHit ray;
+            set_ray(ray.ray, glm::vec3(rays.eye()), glm::vec3(direction), 0.0F, infinite);
+            ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+            intersect(scene.tree.get(), ray);
+            if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
+            image.depth[pixel(x, y)] = ray.ray.tfar;
+            image.primitive[pixel(x, y)] = scene.first_triangle[ray.hit.geomID] + ray.hit.primID;
+            RTCRay shadow;
+            rays.aim_at_light(shadow, rays.eye() + direction * double(ray.ray.tfar));
+            occluded(scene.tree.get(), shadow);
+            image.lit[pixel(x, y)] = shadow.tfar >= 0.0F ? 1 : 0;
         }
-        return alpha >= material->alpha_cutoff;
+    }
+
+    /// Rows y and y + 1, in blocks of 4 x 2 pixels.
+    void trace_packets(int y) const {
+        for (int x = 0; x < image.width; x += packet_width)
+            trace_packet(x, y);
+    }
+
+private:
+    static void put(RTCRay8& to, int i, const RTCRay& ray) {
+        to.org_x[i] = ray.org_x;
+        to.org_y[i] = ray.org_y;
+        to.org_z[i] = ray.org_z;
+        to.dir_x[i] = ray.dir_x;
+        to.dir_y[i] = ray.dir_y;
+        to.dir_z[i] = ray.dir_z;
+        to.tnear[i] = ray.tnear;
+        to.tfar[i] = ray.tfar;
+        to.time[i] = ray.time;
+        to.mask[i] = ray.mask;
+        to.id[i] = ray.id;
+        to.flags[i] = ray.flags;
+    }
+
+    void trace_packet(int x0, int y0) const {
+        alignas(32) std::array<int, packet_rays> valid{};
+        alignas(32) std::array<int, packet_rays> shadowed{};
+        std::array<glm::dvec3, packet_rays> directions;
+        RTCRayHit8 hits;
+        for (int i = 0; i < packet_rays; ++i) {
+            const int x = x0 + i % packet_width;
+            const int y = y0 + i / packet_width;
+            valid[std::size_t(i)] = x < image.width && y < image.height ? -1 : 0;
+            directions[std::size_t(i)] = rays.direction({x + 0.5, y + 0.5});
+            RTCRay ray;
+            set_ray(ray, glm::vec3(rays.eye()), glm::vec3(directions[std::size_t(i)]), 0.0F, infinite);
+            put(hits.ray, i, ray);
+            hits.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+            hits.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        intersect8(valid.data(), scene.tree.get(), hits);
+        RTCRay8 shadows;
+        bool any = false;
+        for (int i = 0; i < packet_rays; ++i) {
+            const bool hit = valid[std::size_t(i)] != 0 && hits.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+            shadowed[std::size_t(i)] = hit ? -1 : 0;
+            any = any || hit;
+            RTCRay ray;
+            rays.aim_at_light(ray, hit ? rays.eye() + directions[std::size_t(i)] * double(hits.ray.tfar[i])
+                                       : glm::dvec3(0.0));
+            put(shadows, i, ray);
+        }
+        if (!any) return;
+        occluded8(shadowed.data(), scene.tree.get(), shadows);
+        for (int i = 0; i < packet_rays; ++i) {
+            if (shadowed[std::size_t(i)] == 0) continue;
+            const std::size_t p = pixel(x0 + i % packet_width, y0 + i / packet_width);
+            image.depth[p] = hits.ray.tfar[i];
+            image.primitive[p] = scene.first_triangle[hits.hit.geomID[i]] + hits.hit.primID[i];
+            image.lit[p] = shadows.tfar[i] >= 0.0F ? 1 : 0;
+        }
     }
 };
-
-void drop_holes(const RTCFilterFunctionNArguments* arguments) {
-    const auto* const masked = static_cast<const MaskedPrimitive*>(arguments->geometryUserPtr);
-    for (unsigned i = 0; i < arguments->N; ++i) {
-        if (arguments->valid[i] == 0) continue;
-        const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, i);
-        const float u = RTCHitN_u(arguments->hit, arguments->N, i);
-        const float v = RTCHitN_v(arguments->hit, arguments->N, i);
-        if (!masked->is_surface(triangle, u, v)) arguments->valid[i] = 0;
-    }
-}
-
-void set_ray(RTCRay& ray, const glm::vec3& origin, const glm::vec3& direction, float near, float far) {
-    ray.org_x = origin.x;
-    ray.org_y = origin.y;
-    ray.org_z = origin.z;
-    ray.dir_x = direction.x;
-    ray.dir_y = direction.y;
-    ray.dir_z = direction.z;
-    ray.tnear = near;
-    ray.tfar = far;
-    ray.time = 0.0F;
-    ray.mask = 0xFFFFFFFFU;
-    ray.id = 0;
-    ray.flags = 0;
-}
 
 }  // namespace
 
 struct ImageTracer::Parts {
-    Parts(const scenes::Scene& scene, const scenes::Snapshot& snapshot) : device(rtcNewDevice(nullptr)) {
-        const auto start = Clock::now();
-        if (device == nullptr) throw Error(Fault::memory, "reference", "Embree cannot start");
-        tree.reset(rtcNewScene(device.get()));
-        if (!snapshot.bounds.empty()) {
-            // Floats hold more of a point when they count from the middle of the scene.
-            centre = 0.5 * (snapshot.bounds.low + snapshot.bounds.high);
-            size = glm::length(snapshot.bounds.high - snapshot.bounds.low);
-        }
-        masked.reserve(snapshot.items.size());
-        std::size_t triangles = 0;
-        for (const scenes::Item& item : snapshot.items) {
-            if (item.primitive->topology != scenes::Topology::triangles || item.primitive->indices.empty())
-                continue;
-            add(scene, item);
-            first_triangle.push_back(std::uint32_t(triangles));
-            triangles += item.primitive->element_count();
-        }
-        rtcCommitScene(tree.get());
-        if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) {
-            throw Error(Fault::memory, "reference", "Embree cannot hold the triangles",
-                        "choose a smaller scene");
-        }
-        build_milliseconds = milliseconds_since(start);
-    }
-
-    void add(const scenes::Scene& scene, const scenes::Item& item) {
-        const scenes::Primitive& primitive = *item.primitive;
-        const EmbreeGeometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-        auto* const vertices = static_cast<float*>(
-            rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    3 * sizeof(float), item.positions.size()));
-        auto* const indices = static_cast<std::uint32_t*>(
-            rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), primitive.element_count()));
-        if (vertices == nullptr || indices == nullptr) {
-            throw Error(Fault::memory, "reference", "Embree cannot hold the triangles",
-                        "choose a smaller scene");
-        }
-        for (std::size_t i = 0; i < item.positions.size(); ++i) {
-            const glm::dvec3 world(item.world_from_mesh * glm::dvec4(item.positions[i], 1.0));
-            for (int axis = 0; axis < 3; ++axis)
-                vertices[3 * i + std::size_t(axis)] = float(world[axis] - centre[axis]);
-        }
-        std::copy(primitive.indices.begin(), primitive.indices.end(), indices);
-        const scenes::Material* const material =
-            primitive.material >= 0 ? &scene.materials[std::size_t(primitive.material)] : nullptr;
-        if (material != nullptr && material->alpha_mode == scenes::AlphaMode::mask) {
-            MaskedPrimitive& mask =
-                masked.emplace_back(MaskedPrimitive{&primitive, material, nullptr, nullptr});
-            if (material->texture >= 0) {
-                mask.texture = &scene.textures[std::size_t(material->texture)];
-                if (mask.texture->image >= 0) mask.image = &scene.images[std::size_t(mask.texture->image)];
-            }
-            rtcSetGeometryUserData(geometry.get(), &mask);
-            rtcSetGeometryIntersectFilterFunction(geometry.get(), drop_holes);
-            rtcSetGeometryOccludedFilterFunction(geometry.get(), drop_holes);
-        }
-        rtcCommitGeometry(geometry.get());
-        rtcAttachGeometry(tree.get(), geometry.get());
-    }
-
-    EmbreeDevice device;
-    EmbreeScene tree;
-    std::vector<MaskedPrimitive> masked;        ///< Embree points in here
-    std::vector<std::uint32_t> first_triangle;  ///< of each geometry
-    glm::dvec3 centre{0.0};
-    double size = 1.0;
-    double build_milliseconds = 0.0;
+    TracedScene scene;
 };
-
-namespace {
-
-/// One image's worth of rays.
-class Rays {
-public:
-    Rays(const ReferenceCamera& camera, const ReferenceLight& light, const glm::dvec3& centre,
-         double scene_size, ReferenceImage& image)
-        : light_(light),
-          eye_(camera.eye - centre),
-          centre_(centre),
-          gap_(float(1e-5 * scene_size)),
-          image_(image) {
-        forward_ = glm::normalize(camera.target - camera.eye);
-        const glm::dvec3 right = glm::normalize(glm::cross(forward_, camera.up));
-        const double half_height = std::tan(0.5 * camera.yfov);
-        right_ = right * (half_height * image.width / image.height);
-        up_ = glm::cross(right, forward_) * half_height;
-    }
-
-    void trace_row(RTCScene tree, const std::vector<std::uint32_t>& first_triangle, int y) const {
-        for (int x = 0; x < image_.width; ++x) {
-            const double across = (2.0 * x + 1.0) / image_.width - 1.0;
-            const double above = 1.0 - (2.0 * y + 1.0) / image_.height;
-            const glm::dvec3 direction = glm::normalize(forward_ + across * right_ + above * up_);
-            RTCRayHit ray;
-            set_ray(ray.ray, glm::vec3(eye_), glm::vec3(direction), 0.0F,
-                    std::numeric_limits<float>::infinity());
-            ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-            intersect(tree, ray);
-            if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-            const std::size_t pixel = std::size_t(y) * std::size_t(image_.width) + std::size_t(x);
-            image_.depth[pixel] = ray.ray.tfar;
-            image_.primitive[pixel] = first_triangle[ray.hit.geomID] + ray.hit.primID;
-            image_.lit[pixel] = sees_light(tree, eye_ + direction * double(ray.ray.tfar)) ? 1 : 0;
-        }
-    }
-
-private:
-    [[nodiscard]] bool sees_light(RTCScene tree, const glm::dvec3& point) const {
-        const glm::dvec3 way = light_.positional ? light_.position - centre_ - point : light_.towards;
-        const double length = glm::length(way);
-        const float far = light_.positional ? float(length) : std::numeric_limits<float>::infinity();
-        RTCRay ray;
-        set_ray(ray, glm::vec3(point), glm::vec3(way / length), gap_, far);
-        occluded(tree, ray);
-        return ray.tfar >= 0.0F;
-    }
-
-    const ReferenceLight& light_;
-    glm::dvec3 eye_, centre_, forward_, right_, up_;
-    float gap_;  ///< shadow rays start so far from the surface, not to meet it again
-    ReferenceImage& image_;
-};
-
-}  // namespace
 
 ImageTracer::ImageTracer(const scenes::Scene& scene, const scenes::Snapshot& snapshot)
-    : parts_(std::make_unique<Parts>(scene, snapshot)) {}
+    : parts_(new Parts{TracedScene(scene, snapshot)}) {}
 ImageTracer::~ImageTracer() = default;
 
 bool ImageTracer::blocked(const glm::dvec3& from, const glm::dvec3& to) const {
     const glm::dvec3 way = to - from;
     const double length = glm::length(way);
-    const double gap = 1e-5 * parts_->size;
+    const double gap = 1e-5 * parts_->scene.size;
     if (!(length > 2.0 * gap)) return false;
     RTCRay ray;
-    set_ray(ray, glm::vec3(from - parts_->centre), glm::vec3(way / length), float(gap), float(length - gap));
-    occluded(parts_->tree.get(), ray);
+    set_ray(ray, glm::vec3(from - parts_->scene.centre), glm::vec3(way / length), float(gap), float(length - gap));
+    occluded(parts_->scene.tree.get(), ray);
     return ray.tfar < 0.0F;
 }
 
 double ImageTracer::build_milliseconds() const {
-    return parts_->build_milliseconds;
+    return parts_->scene.build_milliseconds;
 }
 
 ReferenceImage ImageTracer::trace(const ReferenceCamera& camera, const ReferenceLight& light, int width,
-                                  int height, int threads) const {
+                                  int height, int threads, Rays kind) const {
     ReferenceImage image;
     image.width = width;
     image.height = height;
     const std::size_t pixels = std::size_t(width) * std::size_t(height);
-    image.depth.assign(pixels, std::numeric_limits<float>::infinity());
+    image.depth.assign(pixels, infinite);
     image.lit.assign(pixels, 0);
     image.primitive.assign(pixels, ReferenceImage::no_primitive);
-    const Rays rays(camera, light, parts_->centre, parts_->size, image);
+    const Work work{parts_->scene, PictureRays(camera, light, parts_->scene, {width, height}), image};
     tbb::task_arena arena(threads > 0 ? threads : int(tbb::task_arena::automatic));
     const auto start = Clock::now();
     arena.execute([&] {
-        tbb::parallel_for(0, height,
-                          [&](int y) { rays.trace_row(parts_->tree.get(), parts_->first_triangle, y); });
+        if (kind == Rays::single) {
+            tbb::parallel_for(0, height, [&](int y) { work.trace_row(y); });
+        } else {
+            tbb::parallel_for(0, (height + 1) / 2, [&](int pair) { work.trace_packets(2 * pair); });
+        }
+    });
+    image.milliseconds = milliseconds_since(start);
+    return image;
+}
+
+namespace {
+
+/// Light that a surface sends to the eye, linear (shaders/march/shade.glsl has the same formula).
+glm::vec3 shade(const TracedScene& scene, const PictureRays& rays, const Shading& shading,
+                const glm::dvec3& direction) {
+    RTCRayHit ray;
+    set_ray(ray.ray, glm::vec3(rays.eye()), glm::vec3(direction), 0.0F, infinite);
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    intersect(scene.tree.get(), ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return glm::vec3(-1.0F);
+    const PrimitiveLook& look = scene.looks[ray.hit.geomID];
+    const TrianglePoint at{ray.hit.primID, glm::vec3(1.0F - ray.hit.u - ray.hit.v, ray.hit.u, ray.hit.v)};
+    glm::dvec3 normal = look.normal_at(at);
+    if (glm::dot(normal, direction) > 0.0) normal = -normal;  // surfaces have two sides
+    const glm::dvec3 point = rays.eye() + direction * double(ray.ray.tfar);
+    float facing = float(std::max(glm::dot(normal, rays.towards_light(point)), 0.0));
+    if (shading.shadows && facing > 0.0F) {
+        RTCRay shadow;
+        rays.aim_at_light(shadow, point);
+        occluded(scene.tree.get(), shadow);
+        if (shadow.tfar < 0.0F) facing = 0.0F;
+    }
+    const float sky = shading.ambient * (0.75F + 0.25F * float(normal.y));
+    return look.color_at(at) * shading.light_color * (sky + (1.0F - shading.ambient) * facing);
+}
+
+float srgb_from_linear(float c) {
+    const float clamped = std::min(std::max(c, 0.0F), 1.0F);
+    return clamped > 0.0031308F ? 1.055F * std::pow(clamped, 1.0F / 2.4F) - 0.055F : 12.92F * clamped;
+}
+
+}  // namespace
+
+ShadedImage ImageTracer::shade(const ReferenceCamera& camera, const ReferenceLight& light,
+                               const Shading& shading, int width, int height, int samples_a_side) const {
+    const TracedScene& scene = parts_->scene;
+    const PictureRays rays(camera, light, scene, {width, height});
+    ShadedImage image;
+    image.width = width;
+    image.height = height;
+    image.srgb.resize(std::size_t(width) * std::size_t(height));
+    image.coverage.resize(image.srgb.size());
+    const float share = 1.0F / float(samples_a_side * samples_a_side);
+    const auto start = Clock::now();
+    tbb::parallel_for(0, height, [&](int y) {
+        for (int x = 0; x < width; ++x) {
+            glm::vec3 sum(0.0F);
+            float covered = 0.0F;
+            for (int s = 0; s < samples_a_side * samples_a_side; ++s) {
+                const glm::dvec2 in_pixel((s % samples_a_side + 0.5) / samples_a_side,
+                                          (s / samples_a_side + 0.5) / samples_a_side);
+                const glm::vec3 light_seen =
+                    reference::shade(scene, rays, shading, rays.direction(glm::dvec2(x, y) + in_pixel));
+                covered += light_seen.x < 0.0F ? 0.0F : share;
+                sum += share * (light_seen.x < 0.0F ? shading.background : light_seen);
+            }
+            const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            image.srgb[p] = {srgb_from_linear(sum.r), srgb_from_linear(sum.g), srgb_from_linear(sum.b)};
+            image.coverage[p] = covered;
+        }
     });
     image.milliseconds = milliseconds_since(start);
     return image;

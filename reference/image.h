@@ -38,9 +38,27 @@ struct ReferenceImage {
     double milliseconds = 0.0;  ///< all rays; the tree of boxes is built before
 };
 
+/// How surfaces look: base colour by the cosine to the light, and by some light from everywhere, as the
+/// ray-marcher's pictures do.
+struct Shading {
+    glm::vec3 light_color{1.0F};
+    float ambient = 0.25F;                      ///< as a share of the light's own
+    glm::vec3 background{0.80F, 0.84F, 0.90F};  ///< linear
+    bool shadows = true;
+};
+
+/// Row after row, from the top left.
+struct ShadedImage {
+    int width = 0;
+    int height = 0;
+    std::vector<glm::vec3> srgb;  ///< encoded, [0, 1]
+    std::vector<float> coverage;  ///< share of the pixel's samples that meet the scene
+    double milliseconds = 0.0;
+};
+
 /// What Embree sees of a snapshot's triangles (lines and points have no area and are left out): one ray
-/// through the centre of each pixel and one shadow ray from where it ends, one at a time. Alpha masks let
-/// rays through where the nearest texel fails the cutoff.
+/// through the centre of each pixel and one shadow ray from where it ends. Alpha masks let rays through where
+/// the nearest texel fails the cutoff.
 class ImageTracer {
 public:
     /// Both must outlive the tracer. @throws Error  Fault::memory when Embree cannot hold the triangles.
@@ -51,9 +69,16 @@ public:
     ImageTracer& operator=(ImageTracer&&) = delete;
     ~ImageTracer();
 
+    /// One at a time, or in packets of 4 x 2 pixels, which find the same.
+    enum class Rays : std::uint8_t { single, packets };
+
     /// @param threads  0 = all cores.
     [[nodiscard]] ReferenceImage trace(const ReferenceCamera& camera, const ReferenceLight& light, int width,
-                                       int height, int threads = 0) const;
+                                       int height, int threads = 0, Rays kind = Rays::single) const;
+
+    /// The picture with samples_a_side^2 rays a pixel, on a regular grid, each with a shadow ray.
+    [[nodiscard]] ShadedImage shade(const ReferenceCamera& camera, const ReferenceLight& light,
+                                    const Shading& shading, int width, int height, int samples_a_side) const;
 
     /// Whether a surface stands between two points of the world. Either end's own surface does not count:
     /// what is nearer to `from` or `to` than 1e-5 of the scene's diagonal is not seen.

@@ -493,6 +493,7 @@ void Renderer::Parts::produce_requests() {
 /// Answers the tile queries of a pass. Bricks come first, then the deepest nodes: whatever the pools' sizes,
 /// the ray that is nearest to its data gets it, so every pass brings some ray forward and the frame ends.
 void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
+    const auto start = Clock::now();
     auto level = [&](std::uint32_t query) { return tree.tile(query / 2).level; };
     std::sort(queries.begin(), queries.end(), [&](std::uint32_t a, std::uint32_t b) {
         const bool brick_a = a % 2 == QUERY_BRICK;
@@ -512,9 +513,12 @@ void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
         }
     }
     find_tiles_asked_for(parents);
+    const auto before_bricks = Clock::now();
     produce_requests();
+    const auto after_bricks = Clock::now();
     statistics.tile_queries += queries.size();
     tree.upload();
+    statistics.tree_ms += milliseconds_since(start) - milliseconds(after_bricks - before_bricks);
 }
 
 PassResult Renderer::Parts::march(PassKind kind) {
@@ -639,6 +643,7 @@ void Renderer::Parts::note_caches(const FrameStatistics& before) {
     statistics.bricks_restored = now.bricks_restored - before.bricks_restored;
     statistics.bricks_prefetched = std::exchange(prefetched, 0);
     statistics.bricks_resident = std::uint64_t(tree.bricks_resident());
+    statistics.bricks_used = std::uint64_t(tree.bricks_used_since(frame_round));
     statistics.brick_slots = std::uint64_t(pool.slot_count());
     statistics.node_pool_bytes = tree.size_bytes();
     statistics.brick_pool_bytes = pool.size_bytes();

@@ -134,10 +134,14 @@ struct FrameStatistics {
     std::uint64_t bricks_prefetched = 0;  ///< produced by prefetch() since the frame before
     double march_ms = 0.0;                ///< of `milliseconds`: rays
     double produce_ms = 0.0;              ///< of `milliseconds`: subdividing, producing, uploading
+    double tree_ms = 0.0;                 ///< of `produce_ms`, by render(): all but the bricks
     bool converged = true;                ///< nothing was missing: the picture is that of render()
     std::uint64_t bricks_resident = 0;    ///< after the frame
-    std::uint64_t brick_slots = 0;        ///< the most that can be resident
-    std::size_t node_pool_bytes = 0;      ///< what the two stores take, all of it, used or not
+    /// Of those, the ones that rays read, or that were produced, since render() or the first of the
+    /// render_within() for this view began.
+    std::uint64_t bricks_used = 0;
+    std::uint64_t brick_slots = 0;    ///< the most that can be resident
+    std::size_t node_pool_bytes = 0;  ///< what the two stores take, all of it, used or not
     std::size_t brick_pool_bytes = 0;
     std::size_t brick_cache_bytes = 0;  ///< what is kept in main memory now
 };

@@ -13,8 +13,8 @@ packages=(
   libgtest-dev libgmp-dev glslang-tools xvfb xdotool assimp-testmodels
   # to read back, in tests, the voxel files that are written
   python3-numpy python3-openvdb libopenvdb-tools goxel
-  # to measure: a peer, and what draws the charts
-  libopenvdb-dev libboost-dev gnuplot-nox
+  # to measure: peers, and what draws the charts
+  libopenvdb-dev libnanovdb-dev libboost-dev gnuplot-nox
 )
 
 # Mesa 25.1 ended OSMesa, so a newer distribution may lack it; EGL then takes its place.

@@ -9,6 +9,6 @@ if(CAIRN_BENCH)
   endif()
   cairn_test(bench_command_test SOURCES bench_command_test.cpp command.h command.cpp scratch_folder.h
              LIBRARIES cairn::base nlohmann_json::nlohmann_json fmt::fmt
-             DEFINITIONS ${bench_definitions} TIMEOUT 120)
+             DEFINITIONS ${bench_definitions} TIMEOUT 300)
   add_dependencies(bench_command_test cairn_app)
 endif()

@@ -1,5 +1,7 @@
 // `cairn bench`, run as a user runs it, at tiny sizes.
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -60,13 +62,112 @@ TEST(BenchVoxelize, SaysThatGnuplotIsMissingAndStillWritesTheTable) {
     EXPECT_FALSE(std::filesystem::exists(folder.file("voxelize.png")));
 }
 
-TEST(BenchRender, WritesATable) {
+/// Runs a chart of tiny size. @return its rows, which the CSV has too.
+nlohmann::json rows_of(const std::string& chart, const std::string& size, const std::string& scene,
+                       const ScratchFolder& folder) {
+    std::vector<std::string> words = {"bench", chart, "--resolutions",       size, "--runs",
+                                      "1",     "-o",  folder.path().string()};
+    if (!scene.empty()) words.insert(words.end(), {"--scene", scene});
+    nlohmann::json rows = cairn_json(words)["measurements"];
+    const std::vector<std::string> lines = lines_of(read_text(folder.file(chart + ".csv")));
+    EXPECT_EQ(lines.size(), rows.size() + 1) << chart;
+    EXPECT_TRUE(lines[0].ends_with(",driver,threads")) << lines[0];
+    return rows;
+}
+
+TEST(BenchEmbree, ComparesWithSingleRaysAndPackets) {
     const ScratchFolder folder;
-    const nlohmann::json answer =
-        cairn_json({"bench", "render", "--scene", "builtin:cornell", "--resolutions", "32", "--runs", "1",
-                    "-o", folder.path().string()});
-    EXPECT_EQ(lines_of(read_text(folder.file("render.csv"))).size(), 2U);
-    EXPECT_GT(answer["measurements"][0]["converged_ms"], 0.0);
+    const nlohmann::json rows = rows_of("embree", "32", "builtin:cornell", folder);
+    ASSERT_GE(rows.size(), 2U);
+    EXPECT_EQ(rows[0]["method"], "embree-single");
+    EXPECT_EQ(rows[1]["method"], "embree-packets");
+    for (const nlohmann::json& row : rows) {
+        EXPECT_GT(row["milliseconds"], 0.0) << row;
+        EXPECT_GT(row["ours_ms"], 0.0) << row;
+        EXPECT_GT(row["bricks"], 0) << row;
+    }
+}
+
+TEST(BenchRender, HasTheSamePictureByAllTraversalsAndPools) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("render", "32", "builtin:cornell", folder);
+    const auto base = std::find_if(rows.begin(), rows.end(), [](const nlohmann::json& row) {
+        return row["varied"] == "shape" && row["n"] == 4 && row["m"] == 16 && row["pixel_error"] == 1.0;
+    });
+    ASSERT_NE(base, rows.end());
+    int others = 0;
+    for (const nlohmann::json& row : rows) {
+        EXPECT_GT(row["rmse"], 0.0) << row;
+        EXPECT_LT(row["rmse"], 0.3) << row;
+        EXPECT_GT(row["bricks_used"], 0) << row;
+        if (row["varied"] == "shape") continue;
+        ++others;
+        EXPECT_EQ(row["rmse"], (*base)["rmse"]) << row;
+        EXPECT_EQ(row["silhouette"], (*base)["silhouette"]) << row;
+    }
+    EXPECT_GE(others, 4);
+#ifdef CAIRN_HAS_GNUPLOT
+    EXPECT_TRUE(read_text(folder.file("render.png"))
+                    .starts_with("\x89"
+                                 "PNG"));
+#endif
+}
+
+TEST(BenchResolution, StaysWithinThePools) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("resolution", "32,128", "builtin:spheres-repeated", folder);
+    ASSERT_EQ(rows.size(), 4U);
+    for (const nlohmann::json& row : rows) {
+        EXPECT_GT(row["bricks_used"], 0) << row;
+        EXPECT_LE(row["bricks_resident"], row["brick_slots"]) << row;
+    }
+    EXPECT_EQ(rows[0]["growth"], 1.0);
+    EXPECT_GT(rows[1]["bricks_used"], rows[0]["bricks_used"]);
+}
+
+TEST(BenchStructure, HasTheSamePictureAsARegularGrid) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("structure", "32", "", folder);
+    std::map<std::string, int> methods;
+    std::map<double, double> apart;
+    for (const nlohmann::json& row : rows) {
+        ++methods[row["method"]];
+        EXPECT_LT(row["coverage_difference"], 0.03) << row;
+        if (row["method"] == "regular-grid" || row["varied"] != "place") continue;
+        const auto [known, is_new] = apart.try_emplace(row["place"], row["coverage_difference"]);
+        if (!is_new) {
+            EXPECT_EQ(row["coverage_difference"], known->second) << row;
+        }
+    }
+    EXPECT_EQ(methods["regular-grid"], 5);
+    EXPECT_EQ(methods["restart"], 4);
+    EXPECT_EQ(methods["stackless"], 4);
+    EXPECT_GE(methods["mini-stack"], 4 + 3);
+}
+
+TEST(BenchExploration, CountsWhatAMovingCameraNeeds) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("exploration", "32", "builtin:cornell", folder);
+    ASSERT_EQ(rows.size(), 4U);
+    EXPECT_EQ(rows[0]["part"], "exploration");
+    EXPECT_GT(rows[0]["bricks"], 0.0);
+    for (const nlohmann::json& row : rows) {
+        EXPECT_GE(row["milliseconds"], row["render_ms"]) << row;
+        EXPECT_GE(row["passes"], 1.0) << row;
+        if (row["part"] != "exploration") {
+            EXPECT_EQ(row["bricks"], 0.0) << row;
+        }
+    }
+}
+
+TEST(BenchProduction, ProducesWhatIsUsed) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("production", "64", "builtin:cornell", folder);
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_GT(rows[0]["bricks_used"], 0);
+    EXPECT_GE(rows[0]["bricks_produced"], rows[0]["bricks_used"]);
+    EXPECT_LT(rows[0]["produced_over_used"], 1.3);
+    EXPECT_GT(rows[0]["brick_ms"], 0.0);
 }
 
 TEST(BenchUsage, HasHelpThatFitsATerminal) {
@@ -81,7 +182,7 @@ TEST(BenchUsage, HasHelpThatFitsATerminal) {
 TEST(BenchUsage, NamesTheChartsThatThereAre) {
     const Answer answer = cairn({"bench", "shadows"});
     EXPECT_EQ(answer.code, 2) << answer;
-    EXPECT_NE(answer.err.find("choose one of: voxelize, render"), std::string::npos) << answer;
+    EXPECT_NE(answer.err.find("choose one of: voxelize, embree, render"), std::string::npos) << answer;
     for (const char* sizes : {"0", "64.5", "100000", "x"})
         EXPECT_EQ(cairn({"bench", "voxelize", "--resolutions", sizes}).code, 2) << sizes;
 }

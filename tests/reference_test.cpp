@@ -65,6 +65,10 @@ protected:
         primitive.material = material;
     }
     ReferenceImage trace() {
+        take_snapshot();
+        return ImageTracer(scene_, snapshot_).trace(camera_, light_, 8, 8, 1);
+    }
+    void take_snapshot() {
         snapshot_ = {};
         for (const scenes::Mesh& mesh : scene_.meshes) {
             const scenes::Primitive& primitive = mesh.primitives[0];
@@ -72,13 +76,10 @@ protected:
             for (const glm::vec3& p : primitive.positions)
                 snapshot_.bounds.add(p);
         }
-        ReferenceCamera camera;
-        camera.eye = {0, 0, 4};
-        camera.yfov = 2.0 * std::atan(0.25);  // one unit up and down at z = 0
-        ReferenceLight light;
-        light.towards = {0, 0, 1};
-        return ImageTracer(scene_, snapshot_).trace(camera, light, 8, 8, 1);
     }
+    ReferenceCamera camera_{.eye = {0, 0, 4},
+                            .yfov = 2.0 * std::atan(0.25)};  // one unit up and down at z = 0
+    ReferenceLight light_{.towards = {0, 0, 1}};
     scenes::Scene scene_;
     scenes::Snapshot snapshot_;
 };
@@ -108,6 +109,51 @@ TEST_F(Image, LetsShadowsFallThroughHoles) {
     const ReferenceImage image = trace();
     EXPECT_EQ(image.lit[1], 1);
     EXPECT_EQ(image.lit[6], 0);
+}
+
+TEST_F(Image, FindsTheSameByPacketsAsByOneRayAtATime) {
+    Random random(4);
+    for (int i = 0; i < 40; ++i) {
+        const auto at = [&] { return float(2.0 * random.unit() - 1.0); };
+        add_square(at(), at(), at(), at(), at());
+    }
+    take_snapshot();
+    light_.towards = {0.3, 0.4, 1.0};
+    const ImageTracer tracer(scene_, snapshot_);
+    for (const glm::ivec2 size : {glm::ivec2(32, 32), glm::ivec2(33, 7)}) {
+        const ReferenceImage one = tracer.trace(camera_, light_, size.x, size.y);
+        const ReferenceImage eight =
+            tracer.trace(camera_, light_, size.x, size.y, 0, ImageTracer::Rays::packets);
+        // Where two squares meet, either may be nearer by a rounding.
+        int differing = 0;
+        for (std::size_t i = 0; i < one.depth.size(); ++i) {
+            const bool both_empty = std::isinf(one.depth[i]) && std::isinf(eight.depth[i]);
+            differing += !both_empty && std::abs(one.depth[i] - eight.depth[i]) > 1e-4F ? 1 : 0;
+            differing += one.lit[i] != eight.lit[i] ? 1 : 0;
+        }
+        EXPECT_LE(differing, size.x * size.y / 100) << size.x << " x " << size.y;
+    }
+}
+
+TEST_F(Image, ShadesByTheCosineAndCountsTheSamplesThatMeetTheScene) {
+    scenes::Material& material = scene_.materials.emplace_back();
+    material.base_color = {0.5F, 0.25F, 1.0F, 1.0F};
+    add_square(-1.0F, -1.0F, 1.0F, 0.125F, 0.0F, 0);  // up to the middle of the fourth row
+    take_snapshot();
+    light_.towards = {0.0, 0.6, 0.8};
+    Shading shading;
+    shading.background = glm::vec3(0.0F);
+    const ShadedImage image = ImageTracer(scene_, snapshot_).shade(camera_, light_, shading, 8, 8, 8);
+    EXPECT_EQ(image.coverage[0], 0.0F);
+    EXPECT_NEAR(image.coverage[3 * 8 + 2], 0.5F, 1e-6F);
+    EXPECT_NEAR(image.coverage[5 * 8 + 2], 1.0F, 1e-6F);
+    const auto srgb = [](float c) { return 1.055F * std::pow(c, 1.0F / 2.4F) - 0.055F; };
+    const float light = 0.25F * 0.75F + 0.75F * 0.8F;
+    for (int channel = 0; channel < 3; ++channel) {
+        const float color = material.base_color[channel] * light;
+        EXPECT_NEAR(image.srgb[5 * 8 + 2][channel], srgb(color), 1e-4F) << channel;
+        EXPECT_NEAR(image.srgb[3 * 8 + 2][channel], srgb(0.5F * color), 1e-4F) << channel;
+    }
 }
 
 }  // namespace

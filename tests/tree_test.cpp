@@ -92,6 +92,7 @@ protected:
         next_round();
     }
     Tree& tree() { return *tree_; }
+    [[nodiscard]] std::uint32_t round() const { return round_; }
     [[nodiscard]] Reached reached() const { return walk(*tree_, slots_); }
 
     /// The pass that ends used these slots.
@@ -183,6 +184,23 @@ TEST_F(TreeTest, SlotUnusedForLongestIsTakenFirst) {
     EXPECT_EQ(tree().bricks_resident(), 4);
     EXPECT_FALSE(tree().add_brick(first + 1).has_value()) << "all were given out in this round";
     EXPECT_EQ(reached().bricks, 4);
+}
+
+TEST_F(TreeTest, CountsTheBricksThatAFrameUsed) {
+    make(8, 4);
+    const std::uint32_t first = children(0);
+    const int kept = brick(first);
+    const int unused = brick(first + 1);
+    EXPECT_EQ(tree().bricks_used_since(round()), 2) << "given out in this round";
+    next_round();
+    const std::uint32_t frame = round();
+    EXPECT_EQ(tree().bricks_used_since(frame), 0);
+    next_round({kept});
+    (void)brick(first + 2);
+    next_round();
+    EXPECT_EQ(tree().bricks_used_since(frame), 2) << "one by rays, one given out";
+    EXPECT_EQ(tree().bricks_used_since(frame - 1), 3) << "slot " << unused << " is still resident";
+    EXPECT_EQ(tree().bricks_resident(), 3);
 }
 
 TEST_F(TreeTest, WhatWasGivenOutInARoundStaysUntilTheNext) {

@@ -65,6 +65,13 @@ Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes,
     upload();
 }
 
+int Tree::bricks_used_since(std::uint32_t round) const {
+    int used = 0;
+    for (int slot = 0; slot < bricks_.count(); ++slot)
+        used += slot_owner_[std::size_t(slot)] != none && bricks_.stamp(slot) >= round ? 1 : 0;
+    return used;
+}
+
 void Tree::begin_round(std::uint32_t round, const std::vector<std::uint32_t>& brick_stamps) {
     round_ = round;
     slots_sorted_ = false;

@@ -47,6 +47,8 @@ public:
         return node_buffer_.size_bytes() + mean_buffer_.size_bytes();
     }
     [[nodiscard]] int bricks_resident() const { return bricks_.used_count(); }  ///< orphans included
+    /// Bricks that nodes hold and that were given out, or used by rays, in that round or later.
+    [[nodiscard]] int bricks_used_since(std::uint32_t round) const;
 
     /// A brick whose node is gone.
     struct Orphan {

@@ -1,0 +1,146 @@
+#include "bench/frames.h"
+
+#include <algorithm>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "bench/real_scenes.h"
+#include "gl/context.h"
+#include "renderer/produce/dense_field.h"
+#include "renderer/produce/made_fields.h"
+#include "scenes/load.h"
+#include "scenes/snapshot.h"
+#include "scenes/volume.h"
+
+namespace cairn::bench {
+namespace {
+
+constexpr double shell_inner = 0.25;
+constexpr double shell_outer = 0.30;
+constexpr std::int64_t copy_resolution = 256;
+/// Of the densest, through a finest voxel: so solids are opaque after a few, however fine they are.
+constexpr double optical_depth = 1.0;
+/// What does not show of a scan, as a share of its densities.
+constexpr double scan_empty = 0.3;
+
+/// @param empty  density that does not show; 0 where voxels that are coarse and thin are to show as such.
+renderer::TransferFunction opaque(double empty, double voxel_size) {
+    return renderer::TransferFunction(
+        {{empty, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), optical_depth / voxel_size}});
+}
+
+/// A field elsewhere.
+class Moved final : public renderer::Field {
+public:
+    Moved(std::shared_ptr<const renderer::Field> field, const glm::dvec3& origin)
+        : field_(std::move(field)), frame_(field_->frame()) {
+        frame_.origin = origin;
+    }
+    [[nodiscard]] const renderer::FieldFrame& frame() const override { return frame_; }
+    void fill(int coarseness, const glm::i64vec3& low, const glm::ivec3& count,
+              float* values) const override {
+        field_->fill(coarseness, low, count, values);
+    }
+    [[nodiscard]] renderer::FieldRange range(const glm::i64vec3& low,
+                                             const glm::i64vec3& high) const override {
+        return field_->range(low, high);
+    }
+
+private:
+    std::shared_ptr<const renderer::Field> field_;
+    renderer::FieldFrame frame_;
+};
+
+}  // namespace
+
+struct Subject::Data {
+    std::optional<scenes::Scene> scene;
+    std::optional<scenes::Snapshot> snapshot;
+    std::optional<scenes::Volume> volume;
+    bool is_repeated = false;
+};
+
+Subject::Subject(const std::string& path) : data_(std::make_unique<Data>()), name_(scene_name(path)) {
+    const scenes::Bounds unit{glm::dvec3(-0.5), glm::dvec3(0.5)};
+    if (path == "builtin:hollow-sphere" || path == "builtin:spheres-repeated") {
+        data_->is_repeated = path == "builtin:spheres-repeated";
+        bounds_ = unit;
+    } else if (scenes::is_volume_file(path)) {
+        data_->volume = scenes::load_volume(path);
+        bounds_ = data_->volume->bounds();
+    } else {
+        data_->scene = scenes::load(path);
+        data_->snapshot = scenes::take_snapshot(*data_->scene);
+        bounds_ = data_->snapshot->bounds;
+    }
+}
+
+Subject::~Subject() = default;
+Subject::Subject(Subject&&) noexcept = default;
+Subject& Subject::operator=(Subject&&) noexcept = default;
+
+Cell Subject::triangles() const {
+    return data_->snapshot ? Cell(std::int64_t(data_->snapshot->triangle_count)) : Cell{};
+}
+
+renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders) const {
+    if (data_->scene) return {*data_->scene, *data_->snapshot, tree, shaders};
+    if (data_->volume) {
+        const glm::dvec3& spacing = data_->volume->spacing;
+        const double voxel_size = std::min({spacing.x, spacing.y, spacing.z});
+        return {*data_->volume, opaque(scan_empty, voxel_size), tree, {}, shaders};
+    }
+    const std::int64_t resolution = renderer::tree_shape_of(tree).resolution();
+    const int copies = data_->is_repeated ? int(std::max<std::int64_t>(resolution / copy_resolution, 1)) : 1;
+    const double side = 1.0 / copies;
+    std::shared_ptr<const renderer::Field> field =
+        std::make_shared<renderer::HollowSphere>(tree.n, resolution / copies, shell_inner, shell_outer, side);
+    if (copies > 1) {
+        const auto repeated = std::make_shared<renderer::RepeatedField>(std::move(field), copies);
+        field = std::make_shared<Moved>(repeated, bounds_.low);
+    }
+    return {std::move(field), opaque(0.0, 1.0 / double(resolution)), tree, {}, shaders};
+}
+
+renderer::View Subject::view(int width, int height) const {
+    renderer::View view;
+    view.width = width;
+    view.height = height;
+    view.camera = renderer::framing_camera(bounds_, double(width) / height);
+    return view;
+}
+
+double frame_ms(renderer::Renderer& renderer, const renderer::View& view) {
+    renderer.forget_picture();
+    (void)renderer.render(view);
+    return renderer.statistics().milliseconds;
+}
+
+Entrant::Entrant(renderer::Renderer made, const renderer::View& looks)
+    : Entrant(std::make_shared<renderer::Renderer>(std::move(made)), looks) {}
+
+Entrant::Entrant(std::shared_ptr<renderer::Renderer> made, const renderer::View& looks)
+    : renderer(std::move(made)), view(looks) {
+    first_ms = frame_ms(*renderer, view);
+    first = renderer->statistics();
+}
+
+void measure_in_turn(std::vector<Entrant>& entrants, int runs) {
+    for (int run = 0; run < runs; ++run) {
+        for (Entrant& entrant : entrants) {
+            entrant.renderer->forget_picture();
+            entrant.image = entrant.renderer->render(entrant.view);
+            entrant.converged = entrant.renderer->statistics();
+            entrant.samples_ms.push_back(entrant.converged.milliseconds);
+        }
+    }
+}
+
+std::vector<Cell> on_this_machine(std::vector<Cell> row) {
+    row.emplace_back(gl::driver_name());
+    row.emplace_back(std::int64_t(std::thread::hardware_concurrency()));
+    return row;
+}
+
+}  // namespace cairn::bench

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/chart.h"
+#include "renderer/renderer.h"
+
+namespace cairn::bench {
+
+/// A scene or a volume that charts look at, by its path; besides what `cairn render` takes:
+/// builtin:hollow-sphere, the shell of Crassin 2007, section 3.7.2, and builtin:spheres-repeated, copies of
+/// it of 256^3 voxels each. Both have as many voxels as the tree allows.
+class Subject {
+public:
+    explicit Subject(const std::string& path);
+    ~Subject();
+    Subject(Subject&&) noexcept;
+    Subject& operator=(Subject&&) noexcept;
+    Subject(const Subject&) = delete;
+    Subject& operator=(const Subject&) = delete;
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] const scenes::Bounds& bounds() const { return bounds_; }
+    [[nodiscard]] Cell triangles() const;  ///< nothing for a volume
+    [[nodiscard]] renderer::Renderer make(const renderer::TreeOptions& tree,
+                                          const gl::ShaderSource& shaders) const;
+    /// The whole of it.
+    [[nodiscard]] renderer::View view(int width, int height) const;
+
+private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+    std::string name_;
+    scenes::Bounds bounds_;
+};
+
+/// Marches a frame, whatever was shown before. @return milliseconds
+double frame_ms(renderer::Renderer& renderer, const renderer::View& view);
+
+/// Renderers whose frames are measured in turn, so that their ratios hold when the machine's speed drifts.
+struct Entrant {
+    std::shared_ptr<renderer::Renderer> renderer;  ///< of several, where pools hold what all of them use
+    renderer::View view;
+    double first_ms = 0.0;                ///< the first frame, into empty pools
+    renderer::FrameStatistics first;      ///< of it
+    renderer::FrameStatistics converged;  ///< of the last
+    renderer::Image image;                ///< of the last
+    std::vector<double> samples_ms;       ///< converged frames
+
+    Entrant(renderer::Renderer made, const renderer::View& view);
+    Entrant(std::shared_ptr<renderer::Renderer> made, const renderer::View& view);
+};
+void measure_in_turn(std::vector<Entrant>& entrants, int runs);
+
+/// The last two columns of every table of frames: "driver" and "threads".
+[[nodiscard]] std::vector<Cell> on_this_machine(std::vector<Cell> row);
+
+}  // namespace cairn::bench
