@@ -88,7 +88,7 @@ struct Ahead {
     bool done = true;
 };
 constexpr int ahead_pixels = 4096;  // of a band: a pass through it takes some milliseconds
-constexpr int ahead_stride = 4;     // at most: pixels a ray
+constexpr int ahead_stride = 2;     // at most: pixels a ray
 
 /// The same rays at fewer pixels: each sees the levels that it would see in the whole picture.
 View thinned_by(const View& view, int stride) {

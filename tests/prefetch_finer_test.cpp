@@ -26,7 +26,7 @@ protected:
         view_.camera =
             app::snapped(renderer::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0));
         near_ = view_;
-        near_.camera.eye = glm::mix(view_.camera.target, view_.camera.eye, 0.4);
+        near_.camera.eye = glm::mix(view_.camera.target, view_.camera.eye, 0.5);
     }
     [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
         return Renderer(scene_, scenes::take_snapshot(scene_), options);
@@ -112,7 +112,7 @@ TEST_F(PrefetchFiner, NothingIsProducedWithoutTimeOrForWhatIsFineEnough) {
     EXPECT_THROW((void)renderer.prefetch_finer(-1.0), Error);
     Renderer coarse = make({.max_resolution = 64});  // whose finest voxels the view shows already
     (void)coarse.render(view_);
-    EXPECT_EQ(coarse.prefetch_finer(1e9).bricks, 0U);
+    EXPECT_LE(coarse.prefetch_finer(1e9).bricks, 1U) << "but for the root's, which may stand in";
     EXPECT_FALSE(coarse.prefetch_finer(1e9).more);
 }
 
