@@ -80,17 +80,51 @@ struct Refined {
     std::uint32_t stood_in = 0xFFFFFFFFU;
 };
 
+/// The last view, of which prefetch_finer() produces more than it shows.
+struct Ahead {
+    View view;
+    std::uint32_t since = 1;  ///< round in which it was first rendered
+    int bands_done = 0;
+    bool done = true;
+};
+constexpr int ahead_pixels = 4096;  // of a band: a pass through it takes some milliseconds
+constexpr int ahead_stride = 2;     // at most: pixels a ray
+
 /// The same rays at fewer pixels: each sees the levels that it would see in the whole picture.
-View thinned(const View& view) {
+View thinned_by(const View& view, int stride) {
     View thin = view;
-    for (int stride = 4;
-         thin.width == view.width || Marcher::band_rows(thin.width, thin.height) < thin.height; stride *= 2) {
-        thin.width = (view.width + stride - 1) / stride;
-        thin.height = (view.height + stride - 1) / stride;
-        if (view.width == 1) break;
-    }
+    thin.width = (view.width + stride - 1) / stride;
+    thin.height = (view.height + stride - 1) / stride;
     thin.pixel_error = view.pixel_error * thin.height / view.height;
     return thin;
+}
+
+/// So few that they can be marched at once.
+View thinned(const View& view) {
+    int stride = 4;
+    View thin = thinned_by(view, stride);
+    while (view.width > 1 && Marcher::band_rows(thin.width, thin.height) < thin.height)
+        thin = thinned_by(view, stride *= 2);
+    return thin;
+}
+
+/// One level finer. A brick of that level is hit by some ray.
+View finer(const View& view, const TreeShape& shape) {
+    View fine = view;
+    fine.pixel_error = view.pixel_error / shape.n;
+    return thinned_by(fine, std::clamp(int(shape.m * fine.pixel_error), 1, ahead_stride));
+}
+
+/// Bands from the middle of a picture outwards: who comes nearer sees that for longest. @return false behind
+/// the last one.
+bool band_from_middle(const View& view, int number, Rows& rows) {
+    const int count = std::max(ahead_pixels / view.width / PIXEL_BLOCK_SIDE, 1) * PIXEL_BLOCK_SIDE;
+    const int bands = (view.height + count - 1) / count;
+    if (number >= bands) return false;
+    const int middle = bands / 2;
+    const int band = number % 2 == 0 ? middle + number / 2 : middle - (number + 1) / 2;
+    rows = {band * count, std::min(count, view.height - band * count)};
+    return true;
 }
 
 voxelizer::Surface flatten(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
@@ -260,8 +294,9 @@ struct Renderer::Parts {
           tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{}),
                content->has_constant()),
           marcher(shape, content->has_color(),
-                  {options.traversal, options.block_starts, options.query_capacity}, shaders,
-                  with_content(std::move(kind), *content)) {
+                  {options.traversal, options.block_starts, options.query_capacity, options.tile_queries},
+                  shaders, with_content(std::move(kind), *content)),
+          tile_queries(options.tile_queries) {
         if (options.brick_cache_bytes == 0) return;
         if (content->has_low_frequency()) {
             throw Error(Fault::usage, "brick cache", "it cannot tell which tiles of this content are final",
@@ -276,8 +311,13 @@ struct Renderer::Parts {
     void converge(const std::function<void(double)>& progress, double pixels, double pixels_before);
     void serve(std::vector<std::uint32_t> queries);
     void refine(Clock::time_point deadline);
+    void require_lists() const;
+    void look_ahead(Clock::time_point deadline);
     [[nodiscard]] PassResult march(PassKind kind);
-    enum class Serve : std::uint8_t { in_any_case, in_time, ahead };
+    struct Serve {
+        bool in_any_case = false;  ///< the first batch, though there be no time
+        bool ahead = false;        ///< nothing loses its place which the last frame used
+    };
     [[nodiscard]] bool serve_until(Clock::time_point deadline, const PassResult& pass, Serve how);
     void subdivide(std::uint32_t entry);
     [[nodiscard]] int draw_mix(const interop::MarchView& view, int row);
@@ -307,7 +347,9 @@ struct Renderer::Parts {
     std::optional<BrickCache> cache;
     BatchPace batches;
     KeptPicture picture;
+    TileQueries tile_queries = TileQueries::list;
     Refined refined;
+    Ahead ahead;
     std::uint64_t prefetched = 0;   ///< since the last frame
     std::uint32_t frame_round = 1;  ///< what was used since is the last frame's
     std::uint32_t round = 1;
@@ -531,14 +573,13 @@ PassResult Renderer::Parts::march(PassKind kind) {
     statistics.march_ms += milliseconds_since(start);
     ++statistics.passes;
     statistics.rays_launched += pass.launched;
+    statistics.query_bytes += pass.bytes_read;
     ++round;
     tree.begin_round(round, pass.brick_stamps);
     return pass;
 }
 
-/// Answers the most urgent tile queries until time is up, in batches that end soon after it; the first batch
-/// in any case, or only while there is time, or (ahead) so that nothing loses its place which the last frame
-/// used.
+/// Answers the most urgent tile queries until time is up, in batches that end soon after it.
 /// @return whether any was answered.
 bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& pass, Serve how) {
     const std::vector<Question> questions = by_urgency(pass, tree);
@@ -546,7 +587,7 @@ bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& 
     std::uint64_t all_answered = 0;
     std::vector<std::uint32_t> parents;
     auto next = questions.begin();
-    for (bool first = how == Serve::in_any_case; next != questions.end(); first = false) {
+    for (bool first = how.in_any_case; next != questions.end(); first = false) {
         const auto start = Clock::now();
         if (start > deadline && !first) break;
         const std::size_t batch = batches.batch(milliseconds(deadline - start));
@@ -558,7 +599,7 @@ bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& 
                 subdivide(next->entry);
                 parents.push_back(next->entry);
             } else {
-                request(next->entry, !next->to_stand_in && how != Serve::ahead);
+                request(next->entry, !next->to_stand_in && !how.ahead);
             }
         }
         find_tiles_asked_for(parents);
@@ -579,7 +620,7 @@ void Renderer::Parts::refine(Clock::time_point deadline) {
     bool any_answered = false;
     auto serve_pass = [&](const PassResult& pass) {
         const auto start = Clock::now();
-        const bool answered = serve_until(deadline, pass, any_answered ? Serve::in_time : Serve::in_any_case);
+        const bool answered = serve_until(deadline, pass, {.in_any_case = !any_answered});
         statistics.produce_ms += milliseconds_since(start);
         any_answered = any_answered || answered;
         return answered;
@@ -602,6 +643,39 @@ void Renderer::Parts::refine(Clock::time_point deadline) {
     if (any_answered || stood_in >= refined.stood_in) return;
     refined.since = 0;
     refined.stood_in = stood_in;
+}
+
+/// What stays from frame to frame, and what makes room, must be known in full.
+void Renderer::Parts::require_lists() const {
+    if (tile_queries == TileQueries::list) return;
+    throw Error(Fault::usage, "tile queries", "blocks of pixels do not tell all that a frame used",
+                "choose lists for frames within a budget and for prefetching");
+}
+
+/// Produces for the next band of the last view one level finer, until it is done or time is up. The first
+/// answers come in any case, so that each call gets on.
+void Renderer::Parts::look_ahead(Clock::time_point deadline) {
+    const View fine = finer(ahead.view, shape);
+    Rows rows;
+    if (!band_from_middle(fine, ahead.bands_done, rows)) {
+        ahead.done = true;
+        return;
+    }
+    interop::MarchView marched = march_view_of(fine);
+    marched.band = glm::ivec4(rows.first, rows.count, int(fine.show), int(background_pixel(fine.background)));
+    tree.keep_since(ahead.since);
+    marcher.begin_frame(marched, tree, pool);
+    for (;;) {
+        const PassResult pass = march(PassKind::progressive);
+        const bool answered = serve_until(deadline, pass, {.in_any_case = true, .ahead = true});
+        if (pass.done()) {
+            ++ahead.bands_done;
+            return;
+        }
+        if (pass.queries.empty()) continue;  // rays paused
+        ahead.done = !answered;              // there is no more room
+        if (ahead.done || Clock::now() > deadline) return;
+    }
 }
 
 /// A frame that has all the time may give up what a pass has used: no ray goes back.
@@ -675,6 +749,7 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
             "ask for rows that the picture has");
     }
     Parts& parts = *parts_;
+    if (!(view == parts.ahead.view)) parts.ahead = {view, parts.round, 0, false};
     const auto start = Clock::now();
     const FrameStatistics before = parts.totals();
     parts.statistics = FrameStatistics{};
@@ -724,6 +799,7 @@ Image Renderer::render_within(const View& view, double budget_ms) {
 }
 
 Image Renderer::render_rows_within(const View& view, Rows rows, double budget_ms) {
+    parts_->require_lists();
     const auto deadline = deadline_in(budget_ms);
     parts_->keep_what_was_used_for(view, rows);
     return march(view, rows, [&](int) { parts_->refine(deadline); });
@@ -733,6 +809,7 @@ std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
     check(next);
     const auto deadline = deadline_in(budget_ms);
     Parts& parts = *parts_;
+    parts.require_lists();
     if (parts.is_empty()) return 0;
     const FrameStatistics of_frame = parts.statistics;
     const View thin = thinned(next);
@@ -742,12 +819,26 @@ std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
     parts.marcher.begin_frame(marched, parts.tree, parts.pool);
     while (Clock::now() < deadline) {
         const PassResult pass = parts.march(PassKind::progressive);
-        if (!parts.serve_until(deadline, pass, Parts::Serve::ahead) || pass.done()) break;
+        if (!parts.serve_until(deadline, pass, {.ahead = true}) || pass.done()) break;
     }
     const std::uint64_t produced = parts.statistics.bricks_produced - of_frame.bricks_produced;
     parts.prefetched += produced;
     parts.statistics = of_frame;
     return produced;
+}
+
+Prefetched Renderer::prefetch_finer(double budget_ms) {
+    const auto deadline = deadline_in(budget_ms);
+    Parts& parts = *parts_;
+    parts.require_lists();
+    if (parts.is_empty()) return {};
+    const FrameStatistics of_frame = parts.statistics;
+    while (!parts.ahead.done && Clock::now() < deadline)
+        parts.look_ahead(deadline);
+    const std::uint64_t produced = parts.statistics.bricks_produced - of_frame.bricks_produced;
+    parts.prefetched += produced;
+    parts.statistics = of_frame;
+    return {produced, !parts.ahead.done};
 }
 
 void Renderer::forget_picture() {

@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "renderer/march/tile_queries.h"
 #include "renderer/march/transfer_function.h"
 #include "renderer/march/traversal.h"
 #include "renderer/pool/tree_shape.h"
@@ -103,6 +104,9 @@ struct TreeOptions {
     std::size_t brick_cache_bytes = 0;
     /// Tiles that one pass of rays can ask for, [1, 65536]; the rest is asked for again by the next pass.
     int query_capacity = 65536;
+    /// How rays ask for them. With blocks there are neither frames within a budget nor prefetching, which
+    /// must know all that a frame has used.
+    TileQueries tile_queries = TileQueries::list;
 };
 
 /// @throws Error (Fault::usage) for a shape that cannot work.
@@ -123,6 +127,7 @@ struct FrameStatistics {
         0;           ///< of the pixel blocks that may see anything; with a proxy, of the pixels it covers
     int passes = 0;  ///< ray-marching passes; 0 where the picture was known without any
     std::uint64_t tile_queries = 0;  ///< misses that rays reported
+    std::uint64_t query_bytes = 0;   ///< read back from the GPU to know them, and what rays used
     std::uint64_t nodes_subdivided = 0;
     std::uint64_t bricks_produced = 0;
     std::uint64_t constant_tiles = 0;  ///< of those: turned out to hold one value, and keep no brick
@@ -144,6 +149,12 @@ struct FrameStatistics {
     std::size_t node_pool_bytes = 0;  ///< what the two stores take, all of it, used or not
     std::size_t brick_pool_bytes = 0;
     std::size_t brick_cache_bytes = 0;  ///< what is kept in main memory now
+};
+
+/// What a call of Renderer::prefetch_finer() came to.
+struct Prefetched {
+    std::uint64_t bricks = 0;  ///< produced
+    bool more = false;         ///< there may be more to produce; not once the pools are full
 };
 
 class MeshRaster;
@@ -220,8 +231,14 @@ public:
 
     /// Produces bricks for a view that may be asked for next, where it finds room that the last frame does
     /// not need, until `budget_ms` have passed. Changes no picture.
+    /// @throws Error (Fault::usage) with TileQueries::blocks, as render_within() does.
     /// @return  bricks produced.
     std::uint64_t prefetch(const View& next, double budget_ms);
+
+    /// The same for the last view one level finer, as it is needed by who comes nearer: some bands of its
+    /// rows in each call, and only what finds room beside all that this view has used since it was first
+    /// rendered. A call takes some milliseconds longer than `budget_ms`.
+    Prefetched prefetch_finer(double budget_ms);
 
     /// The next frame is marched, whatever its view: for measurements.
     void forget_picture();

@@ -265,8 +265,9 @@ TEST_F(CacheStability, MoreQuestionsThanThereIsRoomForAreAskedAgain) {
         Renderer renderer = make(options);
         EXPECT_EQ(renderer.render(view_).rgba, expected.rgba) << capacity;
         if (capacity == 3) {
-            EXPECT_GT(std::uint64_t(renderer.statistics().passes) * 3, renderer.statistics().bricks_produced)
-                << "no pass asked for more";
+            // One more a pass, because the most urgent of those without room is known.
+            EXPECT_GE(std::uint64_t(renderer.statistics().passes) * 4, renderer.statistics().bricks_produced)
+                << "a pass asked for more";
         }
     }
     for (const int wrong : {0, -1, 65537})

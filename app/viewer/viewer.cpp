@@ -17,6 +17,7 @@ namespace {
 constexpr double frame_aim_ms = 50.0;
 constexpr double slice_aim_ms = 30.0;
 constexpr double least_prefetch_ms = 5.0;
+constexpr double ahead_ms = 8.0;  // of prefetching at a time, while nothing moves
 constexpr double first_pixels = 60000.0;
 /// The view stands still when it has not changed for so long: between two events of a slow drag it does not.
 constexpr double settle_seconds = 0.15;
@@ -147,15 +148,17 @@ void Viewer::step(double now) {
         moved_from_.reset();
         if (picture_) {
             continue_picture();
-        } else {
+        } else if (!settled()) {
             grow();
+        } else {
+            look_ahead();
         }
     }
 }
 
 double Viewer::rest(double now) const {
     if (changed_ || ways_ != glm::dvec3(0.0) || !(snapped(camera()) == view_.camera)) return 0.0;
-    if (settled() && !picture_) return forever;
+    if (settled() && !picture_ && !looks_ahead_) return forever;
     return std::max(changed_at_ + settle_seconds - now, 0.0);
 }
 
@@ -195,6 +198,14 @@ void Viewer::grow() {
     growing_.step(renderer_, slice_pace_);
     note(slice_ms_);
     ++growing_revision_;
+    looks_ahead_ = converged();
+}
+
+/// For a camera that comes nearer.
+void Viewer::look_ahead() {
+    const renderer::Prefetched ahead = renderer_.prefetch_finer(ahead_ms);
+    looks_ahead_ = ahead.more;
+    bricks_produced_ += ahead.bricks;
 }
 
 void Viewer::continue_picture() {

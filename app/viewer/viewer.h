@@ -36,7 +36,8 @@ struct TakenPicture {
 ///
 /// While the view changes, whole frames are rendered with as few pixels as the time allows. When it stands
 /// still the picture grows to full resolution and refines, in slices that end soon, so that input never
-/// waits.
+/// waits. When it has converged, what who comes nearer will need is produced as far as there is room; then
+/// the viewer rests.
 class Viewer {
 public:
     /// @param scene_size  the diagonal of the scene, world units, > 0.
@@ -85,6 +86,7 @@ private:
     void prefetch_for(renderer::View next);
     void grow();
     void continue_picture();
+    void look_ahead();
     void note(std::vector<double>& times);
 
     renderer::Renderer& renderer_;
@@ -101,6 +103,7 @@ private:
 
     Pace frame_pace_;
     Pace slice_pace_;
+    bool looks_ahead_ = false;                    // at rest, there may be more to prefetch
     std::optional<renderer::Camera> moved_from_;  // the camera of the moving frame before
     renderer::Image base_;
     Refinement growing_;

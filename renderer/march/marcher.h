@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 
 #include "gl/buffer.h"
 #include "gl/program.h"
+#include "renderer/march/tile_blocks.h"
+#include "renderer/march/tile_queries.h"
 #include "renderer/march/traversal.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
@@ -28,8 +31,11 @@ enum class PassKind : std::uint8_t {
 
 struct MarchOptions {
     Traversal traversal = Traversal::mini_stack;
-    bool block_starts = true;             ///< rays start at block_starts(), where there are any
-    int query_capacity = QUERY_CAPACITY;  ///< tiles that a pass can ask for, [1, QUERY_CAPACITY]
+    bool block_starts = true;  ///< rays start at block_starts(), where there are any
+    /// Tiles that a pass can ask for, [1, QUERY_CAPACITY]. Where more are asked for, the most urgent is known
+    /// all the same: a brick, or else the children of a node as deep as any.
+    int query_capacity = QUERY_CAPACITY;
+    TileQueries tile_queries = TileQueries::list;  ///< patient passes alone know blocks
 };
 
 /// What one pass of rays came back with.
@@ -44,6 +50,7 @@ struct PassResult {
     std::vector<std::uint32_t>
         query_counts;  ///< rays that ask, by query % QUERY_COUNTS; not of patient passes
     std::vector<std::uint32_t> brick_stamps;  ///< one a slot: the last round whose rays used it
+    std::size_t bytes_read = 0;               ///< from the GPU, to know all this
     [[nodiscard]] bool done() const { return waiting_primary == 0 && waiting_shadow == 0; }
 };
 
@@ -111,6 +118,10 @@ private:
     };
     void run(const Dispatch& dispatch, std::uint32_t round, const BrickPool& pool, PassKind kind) const;
     [[nodiscard]] interop::MarchCounters read_counters() const;
+    void forget_queries(PassKind kind, std::size_t entries);
+    void read_list(PassResult& result, std::uint32_t asked, PassKind kind, int slots);
+    void read_blocks(PassResult& result, std::uint32_t round);
+    [[nodiscard]] std::vector<std::uint32_t> read_urgent(PassResult& result);
 
     MarchOptions options_;
     gl::ShaderSource shaders_;
@@ -128,7 +139,9 @@ private:
     gl::Buffer rays_;
     gl::Buffer lists_;
     gl::Buffer queries_;
-    gl::Buffer usage_;
+    gl::Buffer usage_;  ///< none with tile_blocks_
+    std::optional<TileBlocks> tile_blocks_;
+    std::vector<std::uint32_t> block_stamps_;  ///< of slots, with tile_blocks_
     gl::Buffer image_;
     gl::Buffer starts_;
     std::size_t start_count_ = 0;
@@ -142,6 +155,7 @@ private:
     std::uint32_t waiting_primary_ = 0;
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;
+    bool urgent_told_ = true;  // the last pass left queries by rank
     bool show_tree_ = false;
     int pauses_ = 0;     // passes in a row in which rays only paused
     int list_side_ = 0;  // which half of the lists is read

@@ -50,6 +50,8 @@
 #define SSBO_LISTS 1    // pixels that wait: four lists of one pixel count each
 #define SSBO_QUERIES 2  // MarchCounters, then the tile query buffer
 #define SSBO_USAGE 3    // the last pass that used each brick; then bits: queries already made in this pass
+#define SSBO_TILE_REPORTS 3  // a word a pixel, in place of SSBO_USAGE where rays tell by blocks of pixels
+#define SSBO_TILE_BLOCKS 5   // TILE_BLOCK_ENTRIES words a block (the pass that reduces them, which reads no block starts)
 #define SSBO_IMAGE 4    // RGBA8 a pixel
 #define SSBO_BLOCK_STARTS 5
 #define TEXTURE_NODES 0

@@ -94,6 +94,17 @@
 #define QUERY_COUNTS 65536  // counts of the rays that ask, behind the queries; a query's is number query % QUERY_COUNTS
 #define QUERY_CHILDREN 0  // the node must be subdivided
 #define QUERY_BRICK 1     // the node's brick must be produced
+// Of the queries that find no room, one of each rank is kept, behind the counts: for the children of a node, the rank is its
+// level; then bricks; then the missing tiles of windows, each its own. So the CPU always learns of the most urgent one.
+#define QUERY_RANK_BRICK 63
+#define QUERY_RANK_WINDOWS 64
+#define QUERY_RANKS 576
+
+// What rays tell by blocks of pixels (shaders/march/tile_blocks.comp.glsl): a query, or the slot of a brick that was used.
+#define TILE_BLOCK_SIDE 16
+#define TILE_BLOCK_ENTRIES 4
+#define TILE_REPORT_NONE 4294967295u
+#define TILE_REPORT_USED 2147483648u  // plus the slot
 
 // Cells that a ray may cross in one pass. Past it the ray pauses between two tiles and goes on in the next pass, so that no
 // dispatch runs for long, and no thread turns its loops more often than a driver lets it.

@@ -10,6 +10,9 @@
 #ifndef HAS_FINAL
 #define HAS_FINAL 0
 #endif
+#ifndef TILE_BLOCKS
+#define TILE_BLOCKS 0
+#endif
 
 layout(std140, binding = UBO_VIEW) uniform ViewBlock { MarchView view; };
 layout(std430, binding = SSBO_RAYS) buffer RayBlock { RayState rays[]; };
@@ -18,7 +21,11 @@ layout(std430, binding = SSBO_QUERIES) buffer QueryBlock {
     MarchCounters counters;
     uint queries[];
 };
+#if TILE_BLOCKS
+layout(std430, binding = SSBO_TILE_REPORTS) writeonly buffer ReportBlock { uint tile_reports[]; };
+#else
 layout(std430, binding = SSBO_USAGE) buffer UsageBlock { uint usage[]; };
+#endif
 layout(std430, binding = SSBO_IMAGE) buffer ImageBlock { uint image_rgba8[]; };
 layout(binding = TEXTURE_NODES) uniform usamplerBuffer nodes;
 #if HAS_CONSTANT

@@ -95,6 +95,15 @@ bool shows(Ray ray, int tile_shift) {
 #include "march/trail_mini_stack.glsl"
 #endif
 
+// Level of a tile of this size around the ray.
+int level_of_tile(Ray ray, int tile_shift) {
+#if WINDOWS
+    return windows.of[ray.window].shift_level.w + (ROOT_SHIFT - tile_shift) / N_SHIFT;
+#else
+    return (ROOT_SHIFT - tile_shift) / N_SHIFT;
+#endif
+}
+
 // Finds the tile that the ray's cone asks for at its voxel.
 int descend(Ray ray, out Place place, out int empty_shift) {
     uint entry;
@@ -113,7 +122,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     entry = window_tile(ray);
     if (entry == WINDOW_EMPTY) return DESCENT_EMPTY;
     if ((entry & WINDOW_MISSING) != 0u) {
-        query(entry & ~WINDOW_MISSING, QUERY_CHILDREN);
+        query(entry & ~WINDOW_MISSING, QUERY_CHILDREN, window_rank(ray));
 #if PROGRESSIVE
         if (stand_in) return stand_in_for_cell(Ancestor(-1, ROOT_SHIFT), ROOT_SHIFT, place, empty_shift);
 #endif
@@ -148,7 +157,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
         else ask(2u * entry_count + entry);
 #endif
         if (!has_children(node)) {
-            query(entry, QUERY_CHILDREN);
+            query(entry, QUERY_CHILDREN, level_of_tile(ray, place.tile_shift));
 #if PROGRESSIVE
             if (stand_in) return stand_in_for_cell(ancestor, place.tile_shift - N_SHIFT, place, empty_shift);
 #endif
@@ -170,7 +179,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
             empty_shift = place.tile_shift;
             return DESCENT_EMPTY;
         }
-        query(entry, QUERY_BRICK);
+        query(entry, QUERY_BRICK, QUERY_RANK_BRICK);
 #if PROGRESSIVE
         if (stand_in) return stand_in_for_cell(ancestor, place.tile_shift, place, empty_shift);
 #endif

@@ -11,6 +11,8 @@
 // defines: TREE_N=3 BRICK_M=27 MAX_LEVEL=5 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=2
 // defines: TREE_N=8 BRICK_M=16 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=1 HAS_CONSTANT=1 HAS_FINAL=1
 // defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=8 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2 HAS_CONSTANT=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 TILE_BLOCKS=1
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=0 WINDOWS=1 TILE_BLOCKS=1
 #define RAYS_WIDEN 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
@@ -110,6 +112,7 @@ void main() {
         load_position(ray, state);
     }
     const int end = inside ? march(ray) : MARCH_DONE;
+    leave_report(index);
 
     if (end == MARCH_MISSING) {
         store_position(state, ray);

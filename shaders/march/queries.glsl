@@ -1,19 +1,51 @@
 // What rays tell the cache: what they miss, and what they used.
-// The tile query buffer holds 2 * entry + kind, or 2 * entry_count + entry for a brick that could stand in.
-void ask(uint bit) {
+
+// The last resort of queries for which there is no room: without it the same ones might get it in each pass, and a ray whose
+// data was to come next lose what it had been given to those that ask in between.
+void keep_urgent(uint bit, int rank) {
+    const uint word = uint(QUERY_CAPACITY + QUERY_COUNTS + rank);
+    if (queries[word] == 0u) atomicMax(queries[word], bit + 1u);
+}
+
+#if TILE_BLOCKS
+// By blocks of pixels: each ray leaves the last tile that it missed, or else the last brick that it used (Crassin et al.
+// 2008, section 5.3).
+uint tile_report = TILE_REPORT_NONE;
+
+void query(uint entry, uint kind, int rank) {
+    tile_report = 2u * entry + kind;
+    keep_urgent(tile_report, rank);
+}
+
+void touch(int slot) { tile_report = TILE_REPORT_USED | uint(slot); }
+
+// A pixel has one ray in each pass.
+void leave_report(uint pixel) { tile_reports[pixel] = tile_report; }
+#else
+// By a list. The tile query buffer holds 2 * entry + kind, or 2 * entry_count + entry for a brick that could stand in.
+// @return false when there was no room for it.
+bool ask(uint bit) {
 #if PROGRESSIVE
     // How many rays ask: several tiles may share a count, which only disturbs the order of their production.
     atomicAdd(queries[uint(QUERY_CAPACITY) + bit % uint(QUERY_COUNTS)], 1u);
 #endif
     const uint old = atomicOr(usage[usage_query_offset + bit / 32u], 1u << (bit % 32u));
-    if ((old >> (bit % 32u) & 1u) != 0u) return;  // another ray has asked
+    if ((old >> (bit % 32u) & 1u) != 0u) return true;  // another ray has asked
     const uint place = atomicAdd(counters.queries, 1u);
-    if (place < query_capacity) queries[place] = bit;
+    if (place >= query_capacity) return false;
+    queries[place] = bit;
+    return true;
 }
 
-void query(uint entry, uint kind) { ask(2u * entry + kind); }
+void query(uint entry, uint kind, int rank) {
+    const uint bit = 2u * entry + kind;
+    if (!ask(bit)) keep_urgent(bit, rank);
+}
 
 // Tells the cache that this pass used the brick.
 void touch(int slot) {
     if (usage[slot] != pass_number) atomicMax(usage[slot], pass_number);
 }
+
+void leave_report(uint pixel) {}
+#endif

@@ -9,6 +9,7 @@
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=2 WITH_MESHES
 // defines: TREE_N=3 BRICK_M=81 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2
 // defines: TREE_N=8 BRICK_M=16 MAX_LEVEL=3 HAS_COLOR=1 PROGRESSIVE=1 TRAVERSAL=2 HAS_CONSTANT=1 HAS_FINAL=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2 TILE_BLOCKS=1
 #define RAYS_WIDEN 0
 #include "march/march.glsl"
 #include "march/shade.glsl"
@@ -151,7 +152,9 @@ void main() {
         visibility = uintBitsToFloat(state.voxel_t_weight.w);
     }
 
-    if (inside && march(ray) == MARCH_MISSING) {
+    const int end = inside ? march(ray) : MARCH_DONE;
+    leave_report(index);
+    if (end == MARCH_MISSING) {
         store_position(state, ray);
         state.voxel_t_weight.w = floatBitsToUint(visibility);
         rays[index] = state;

@@ -3,6 +3,7 @@
 // defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=1 VOLUME_STEPS=1 HAS_CONSTANT=1
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=0 VOLUME_STEPS=16
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 VOLUME_STEPS=1 WITH_MESHES WITH_PROXY
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 VOLUME_STEPS=2 TILE_BLOCKS=1
 #define RAYS_WIDEN 1
 #define VISIT_TURNS VOLUME_STEPS
 #include "march/march.glsl"
@@ -112,6 +113,7 @@ void main() {
         load_position(ray, state);
     }
     const int end = inside ? march(ray) : MARCH_DONE;
+    leave_report(index);
 
     if (end == MARCH_MISSING) {
         store_position(state, ray);

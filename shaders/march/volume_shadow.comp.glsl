@@ -3,6 +3,7 @@
 // defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=1 VOLUME_STEPS=1 HAS_CONSTANT=1
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=0 VOLUME_STEPS=16
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2 VOLUME_STEPS=1 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2 VOLUME_STEPS=2 TILE_BLOCKS=1
 #define RAYS_WIDEN 0
 #define VISIT_TURNS VOLUME_STEPS
 #include "march/march.glsl"
@@ -69,7 +70,9 @@ void main() {
         visibility = uintBitsToFloat(state.voxel_t_weight.w);
     }
 
-    if (inside && march(ray) == MARCH_MISSING) {
+    const int end = inside ? march(ray) : MARCH_DONE;
+    leave_report(index);
+    if (end == MARCH_MISSING) {
         store_position(state, ray);
         state.voxel_t_weight.w = floatBitsToUint(visibility);
         rays[index] = state;

@@ -20,6 +20,12 @@ uint window_tile(Ray ray) {
     return windows.of[ray.window].tiles[tile.z][tile.x + 2 * tile.y];
 }
 
+// Of a query for that tile.
+int window_rank(Ray ray) {
+    const ivec3 tile = cell_of(ray.voxel, ROOT_SHIFT);
+    return QUERY_RANK_WINDOWS + 8 * ray.window + tile.x + 2 * (tile.y + 2 * tile.z);
+}
+
 // Counts in the voxels of the next window.
 void coarsen(inout Ray ray) {
     const ivec3 shift = windows.of[ray.window].shift_level.xyz;
