@@ -53,6 +53,7 @@ struct MarchMix {
     GLuint mesh_nearest = 0;  ///< 0: no meshes
     GLuint mesh_surface = 0;
     int mesh_first_row = 0;     ///< of the picture, in those
+    bool voxels_hidden = false;
     bool mesh_shadows = false;  ///< voxels cast shadows on meshes
     float mesh_own_height =
         0.0F;               ///< voxels whose centres are no further over a mesh are its own; in their sides
@@ -67,6 +68,7 @@ struct MarchKind {
     std::string shadow = "march/shadow.comp.glsl";
     gl::Defines defines;
     std::function<void()> bind;  ///< before each pass; may be empty
+    bool soft_shadows = true;    ///< the shadow rays know SOFT_SHADOWS and SHOW_LIGHT
 };
 
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
@@ -95,6 +97,8 @@ public:
     [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool,
                                       PassKind kind = PassKind::patient);
 
+    [[nodiscard]] bool has_soft_shadows() const { return kind_.soft_shadows; }
+
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
 
     /// RGBA8, the band's first row first.
@@ -120,7 +124,7 @@ private:
     void set_mix(const gl::Program& program) const;
 
     std::array<gl::Program, 16> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * meshes + 8 * proxy
-    std::array<gl::Program, 4> shadow_;    ///< PROGRESSIVE + 2 * meshes
+    std::array<gl::Program, 8> shadow_;    ///< PROGRESSIVE + 2 * meshes + 4 * soft
     gl::Buffer view_;
     gl::Buffer windows_;  ///< empty where the tree has none
     gl::Buffer shadow_ends_;
@@ -129,6 +133,7 @@ private:
     gl::Buffer lists_;
     gl::Buffer queries_;
     gl::Buffer usage_;
+    gl::Buffer shadow_sums_;  ///< empty until a frame has soft shadows
     gl::Buffer image_;
     gl::Buffer starts_;
     std::size_t start_count_ = 0;
@@ -142,6 +147,7 @@ private:
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;
     bool show_tree_ = false;
+    int shadow_rays_ = 1;  // of a pixel
     int pauses_ = 0;     // passes in a row in which rays only paused
     int list_side_ = 0;  // which half of the lists is read
 };
