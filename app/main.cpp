@@ -60,6 +60,7 @@ ExitCode run(int argc, char** argv) {
     add_check(command, chosen);
     add_render(command, chosen);
     add_view(command, chosen);
+    add_shadow(command, chosen);
     add_export(command, chosen);
     add_bench(command, chosen);
     command.require_subcommand(0, 1);

@@ -19,6 +19,7 @@ void add_check(CLI::App& command, Work& chosen);
 void add_render(CLI::App& command, Work& chosen);
 void add_view(CLI::App& command, Work& chosen);
 void add_export(CLI::App& command, Work& chosen);
+void add_shadow(CLI::App& command, Work& chosen);
 void add_bench(CLI::App& command, Work& chosen);
 
 /// Adds a verb whose options are an `Options`, and whose work is `run(options)`.

@@ -46,17 +46,18 @@ renderer::Camera camera_of(const std::string& text) {
 
 renderer::Light light_of(const std::string& text) {
     const std::vector<double> n = parse_numbers("--light", text, 3, 4);
-    if (n.size() == 4) {
-        throw Error(Fault::usage, "--light", "a radius needs soft shadows, which do not exist yet",
-                    "leave the fourth number out: the light is a point");
-    }
-    return {.positional = true, .position = {n[0], n[1], n[2]}};
+    const double radius = n.size() == 4 ? n[3] : 0.0;
+    if (radius < 0.0) throw Error(Fault::usage, "--light", fmt::format("a radius of {} is negative", radius));
+    return {.positional = true, .position = {n[0], n[1], n[2]}, .radius = radius};
 }
 
-renderer::Shadow shadow_named(const std::string& name) {
-    if (name == "none") return renderer::Shadow::none;
-    if (name == "hard") return renderer::Shadow::hard;
-    throw Error(Fault::usage, "--shadow", fmt::format("there is no \"{}\"", name), "choose none or hard");
+void set_shadow(renderer::View& view, const std::string& name) {
+    if (name != "none" && name != "hard" && name != "soft") {
+        throw Error(Fault::usage, "--shadow", fmt::format("there is no \"{}\"", name),
+                    "choose none, hard or soft");
+    }
+    view.shadow = name == "none" ? renderer::Shadow::none : renderer::Shadow::hard;
+    view.shadow_rays = name == "soft" ? default_soft_rays : 1;
 }
 
 constexpr std::string_view show_names[] = {"surface", "levels", "bricks"};
@@ -121,7 +122,7 @@ std::string shell_word(const std::string& text) {
 
 }  // namespace
 
-void add_view_options(CLI::App& verb, ViewOptions& options) {
+void add_camera_options(CLI::App& verb, ViewOptions& options) {
     add_parsed_option(verb, "--size", "WxH",
                       fmt::format("pixels (default: {}x{})", options.view.width, options.view.height),
                       [&options](const std::string& text) {
@@ -135,16 +136,17 @@ void add_view_options(CLI::App& verb, ViewOptions& options) {
             options.view.camera = camera_of(text);
             options.camera_given = true;
         });
-    add_parsed_option(verb, "--light", "X,Y,Z",
-                      "a white point light in the world (default: the scene's\nfirst directional or point "
-                      "light; from above "
-                      "if it has none)",
-                      [&options](const std::string& text) {
-                          options.view.light = light_of(text);
-                          options.light = text;
-                      });
-    add_parsed_option(verb, "--shadow", "none|hard", "shadows of that light (default: hard)",
-                      [&options](const std::string& text) { options.view.shadow = shadow_named(text); });
+    add_parsed_option(
+        verb, "--light", "X,Y,Z[,RADIUS]",
+        "a white light in the world, a point or a sphere (default:\nthe scene's first directional "
+        "or point light; from above\nif it has none)",
+        [&options](const std::string& text) {
+            options.view.light = light_of(text);
+            options.light = text;
+        });
+}
+
+void add_tree_options(CLI::App& verb, ViewOptions& options) {
     add_parsed_option(verb, "--max-resolution", "N",
                       fmt::format("the most voxels across the scene that rays may ask for\n(default: {})",
                                   options.tree.max_resolution),
@@ -171,6 +173,15 @@ void add_view_options(CLI::App& verb, ViewOptions& options) {
         verb, "--pixel-error", "E",
         "the size of a voxel on the screen, in pixels, that rays\nlook for (default: 1)",
         [&options](const std::string& text) { options.view.pixel_error = pixel_error_of(text); });
+}
+
+void add_view_options(CLI::App& verb, ViewOptions& options) {
+    add_camera_options(verb, options);
+    add_parsed_option(verb, "--shadow", "none|hard|soft",
+                      fmt::format("shadows of that light; soft ones take {} rays a pixel\n(default: hard)",
+                                  default_soft_rays),
+                      [&options](const std::string& text) { set_shadow(options.view, text); });
+    add_tree_options(verb, options);
     add_parsed_option(
         verb, "--transfer", "NAME|POINTS",
         fmt::format(
@@ -223,6 +234,7 @@ std::string render_command(const SceneOptions& scene, const ViewOptions& options
     add("--camera", camera_text(view.camera));
     if (options.light) add("--light", *options.light);
     if (view.shadow == renderer::Shadow::none) add("--shadow", "none");
+    if (view.shadow == renderer::Shadow::hard && view.shadow_rays > 1) add("--shadow", "soft");
     if (view.pixel_error != renderer::View{}.pixel_error)
         add("--pixel-error", fmt::format("{}", view.pixel_error));
     if (view.show != renderer::Show::surface) add("--show", std::string(show_names[int(view.show)]));

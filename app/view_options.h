@@ -15,6 +15,7 @@
 namespace cairn::app {
 
 constexpr int max_copies = 4096;
+constexpr int default_soft_rays = 64;  ///< a pixel
 
 struct ViewOptions {
     renderer::View view;  ///< camera and light only count when they were given
@@ -28,6 +29,8 @@ struct ViewOptions {
     int zoom = 0;                            ///< of builtin:fractal, a power of two
 };
 void add_view_options(CLI::App& verb, ViewOptions& options);
+void add_camera_options(CLI::App& verb, ViewOptions& options);  ///< of those: picture, camera and light
+void add_tree_options(CLI::App& verb, ViewOptions& options);    ///< of those: voxels and their caches
 
 /// The view of the options, with the scene's own light and a camera that sees the whole scene where none was
 /// given. @throws Error as renderer::check() does.

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 #include <optional>
 #include <tuple>
@@ -158,6 +160,16 @@ void check(const View& view) {
     if (!std::isfinite(side) || side < 1e-9) {
         fail("the camera's up direction is the one it looks along", "choose another up direction");
     }
+    if (view.shadow_rays < 1 || view.shadow_rays > MAX_SHADOW_RAYS) {
+        fail(fmt::format("{} shadow rays a pixel", view.shadow_rays),
+             fmt::format("choose 1 to {}", MAX_SHADOW_RAYS));
+    }
+    if (!(view.light.radius >= 0.0) || !std::isfinite(view.light.radius))
+        fail("the light's radius is negative or not finite", "0 is a point");
+    if (!(view.light.angle >= 0.0 && view.light.angle < 1.5707))
+        fail("the light's angle is not between 0 and 90 degrees", "the sun's is 0.27 degrees");
+    if (!std::isfinite(glm::length(view.light.half_u)) || !std::isfinite(glm::length(view.light.half_v)))
+        fail("the light's half axes are not finite", "use finite ones");
     const glm::dvec3 light = view.light.positional ? view.light.position : view.light.towards;
     if (!std::isfinite(glm::length(light)) || (!view.light.positional && glm::length(light) == 0.0)) {
         fail("the light has no direction", "give it a finite one that is not zero");
@@ -213,8 +225,33 @@ View in_world(const View& view, const voxelizer::Grid& grid, const TreeShape& sh
     out.camera.eye = to_world(view.camera.eye);
     out.camera.target = to_world(view.camera.target);
     out.light.position = to_world(view.light.position);
+    out.light.radius *= side / across;
+    out.light.half_u *= side / across;
+    out.light.half_v *= side / across;
     out.anchor.reset();
     return out;
+}
+
+/// Does the view ask for shadows of more than the light's middle?
+bool is_soft(const View& view) {
+    const Light& light = view.light;
+    if (view.shadow != Shadow::hard || view.shadow_rays == 1) return false;
+    if (!light.positional) return light.angle > 0.0;
+    if (light.shape == LightShape::sphere) return light.radius > 0.0;
+    return light.half_u != glm::dvec3(0.0) || light.half_v != glm::dvec3(0.0);
+}
+
+static_assert(int(LightShape::sphere) == LIGHT_CONE && int(LightShape::rectangle) == LIGHT_RECTANGLE &&
+              int(LightShape::disk) == LIGHT_DISK);
+
+/// @param voxel_size  of the voxels that the view is told in, in units of its light.
+void set_area_light(interop::MarchView& out, const View& view, double voxel_size) {
+    const Light& light = view.light;
+    const double lost = 2.0 * std::pow(std::sin(0.5 * light.angle), 2.0);
+    out.light_u = glm::vec4(glm::vec3(light.half_u / voxel_size), float(light.radius / voxel_size));
+    out.light_v = glm::vec4(glm::vec3(light.half_v / voxel_size), float(lost));
+    const LightShape shape = light.positional ? light.shape : LightShape::sphere;
+    out.area_light = glm::ivec4(is_soft(view) ? view.shadow_rays : 1, int(shape), 0, 0);
 }
 
 /// What of a view is told in voxels: of the finest level, from the root cube's low corner; or of the coarsest
@@ -224,12 +261,14 @@ struct Placed {
     glm::dvec3 light{0.0};   ///< when positional
     glm::dvec3 centre{0.0};  ///< of the root cube
     double side = 0.0;       ///< of the root cube
+    double voxel = 1.0;      ///< in the units that the view's lengths are told in
 };
 
 Placed in_voxels(const View& view, const voxelizer::Grid& grid) {
     auto place = [&](const glm::dvec3& world) { return (world - grid.origin) / grid.voxel_size; };
     const double side = grid.resolution.x;
-    return {place(view.camera.eye), place(view.light.position), glm::dvec3(0.5 * side), side};
+    return {place(view.camera.eye), place(view.light.position), glm::dvec3(0.5 * side), side,
+            grid.voxel_size};
 }
 
 Placed in_window(const View& view, const voxelizer::Grid& grid, const TreeShape& shape,
@@ -237,8 +276,10 @@ Placed in_window(const View& view, const voxelizer::Grid& grid, const TreeShape&
     auto place = [&](const Place& point) { return place_in(window, shape, point); };
     const glm::dvec3 low = place({Tile{}, glm::dvec3(0.0)});
     const glm::dvec3 high = place({Tile{}, glm::dvec3(1.0)});
+    const double unit = view.anchor ? std::ldexp(1.0, -shape.n_shift() * view.anchor->level)
+                                    : 1.0 / (grid.voxel_size * grid.resolution.x);
     return {place(place_of(view, view.camera.eye, grid)), place(place_of(view, view.light.position, grid)),
-            0.5 * (low + high), high.x - low.x};
+            0.5 * (low + high), high.x - low.x, 1.0 / ((high.x - low.x) * unit)};
 }
 
 interop::MarchView march_view(const View& view, const Placed& placed, int n) {
@@ -267,6 +308,7 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
                                       : glm::vec4(glm::vec3(glm::normalize(view.light.towards)), 0.0F);
     out.light_color = glm::vec4(view.light.color, view.light.ambient);
     out.background = glm::vec4(view.background, float(view.shadow_pixel_error));
+    set_area_light(out, view, placed.voxel);
     out.size_shadow = glm::ivec4(view.width, view.height, view.shadow == Shadow::hard ? 1 : 0, 0);
     const auto finite = [](const glm::vec4& v) { return std::isfinite(glm::dot(v, glm::vec4(1.0F))); };
     if (!finite(out.eye) || !finite(out.forward) || !finite(out.light)) {
@@ -391,7 +433,8 @@ Renderer::Renderer(std::shared_ptr<const Field> field, const TransferFunction& t
     MarchKind kind{"march/volume.comp.glsl",
                    "march/volume_shadow.comp.glsl",
                    {{"VOLUME_STEPS", std::to_string(volume_options.steps_per_voxel)}},
-                   [table] { table->bind(); }};
+                   [table] { table->bind(); },
+                   false};
     parts_ = std::make_unique<Parts>(shape.tree, std::move(content), options, shaders, std::move(kind));
 }
 
@@ -415,6 +458,7 @@ int Renderer::Parts::draw_mix(const interop::MarchView& view, int row) {
         drawn.mesh_surface = mesh.surface;
         drawn.mesh_first_row = mesh.first_row;
         drawn.mesh_shadows = mix.mesh_shadows;
+        drawn.voxels_hidden = mix.voxels_hidden;
         drawn.mesh_own_height = mix.meshes_are_voxelized ? MESH_OWN_HEIGHT : 0.0F;
         end = std::min(end, mesh.first_row + mesh.rows);
     }
@@ -739,7 +783,7 @@ void Renderer::Parts::converge(const std::function<void(double)>& progress, doub
     }
 }
 
-Image Renderer::march(const View& view, Rows rows, const std::function<void(int)>& march_band) {
+Image Renderer::march(const View& view, Rows rows, int shown, const std::function<void(int)>& march_band) {
     check(view);
     check_anchor(view.anchor, parts_->shape);
     if (rows.first < 0 || rows.count < 1 || rows.count > view.height - rows.first) {
@@ -749,6 +793,9 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
             "ask for rows that the picture has");
     }
     Parts& parts = *parts_;
+    if (is_soft(view) && !parts.marcher.has_soft_shadows()) {
+        throw Error(Fault::usage, "view", "soft shadows of a volume", "give it one shadow ray a pixel");
+    }
     if (!(view == parts.ahead.view)) parts.ahead = {view, parts.round, 0, false};
     const auto start = Clock::now();
     const FrameStatistics before = parts.totals();
@@ -757,15 +804,20 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
 
     interop::MarchView marched = parts.march_view_of(view);
     const int band_rows = Marcher::band_rows(view.width, view.height);
-    Image image = parts.is_empty() && parts.mix.meshes == nullptr ? background_image(view, rows)
-                                                                  : parts.picture.rows(view, rows);
+    const bool shows_light = shown == SHOW_LIGHT;
+    Image image;
+    if (!shows_light) {
+        image = parts.is_empty() && parts.mix.meshes == nullptr ? background_image(view, rows)
+                                                                : parts.picture.rows(view, rows);
+    }
+    const std::uint32_t background =
+        shows_light ? std::bit_cast<std::uint32_t>(float(SHOWN_NOTHING)) : background_pixel(view.background);
     const bool is_known = !image.rgba.empty();
     if (!is_known) image = {view.width, rows.count, {}};
     const int end = rows.first + rows.count;
     for (int row = rows.first; row < end && !is_known; row += marched.band.y) {
         const int drawn_end = std::min(parts.draw_mix(marched, row), end);
-        marched.band = glm::ivec4(row, std::min(band_rows, drawn_end - row), int(view.show),
-                                  int(background_pixel(view.background)));
+        marched.band = glm::ivec4(row, std::min(band_rows, drawn_end - row), shown, int(background));
         parts.marcher.begin_frame(marched, parts.tree, parts.pool, parts.drawn);
         march_band(row);
         std::vector<std::uint8_t> band = parts.marcher.read_image();
@@ -776,7 +828,7 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
         }
     }
 
-    if (!is_known && statistics.converged) parts.picture.keep(view, rows, image);
+    if (!is_known && !shows_light && statistics.converged) parts.picture.keep(view, rows, image);
     parts.note_caches(before);
     statistics.milliseconds = milliseconds_since(start);
     return image;
@@ -784,14 +836,28 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
 
 Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
     parts_->keep_nothing();
-    return march(view, {0, view.height}, [&](int row) {
+    return march(view, {0, view.height}, int(view.show), [&](int row) {
         parts_->converge(progress, double(view.width) * view.height, double(view.width) * row);
     });
 }
 
+LightShares Renderer::light_shares(const View& view, const std::function<void(double)>& progress) {
+    if (!parts_->marcher.has_soft_shadows()) {
+        throw Error(Fault::usage, "view", "the light at a volume is not that of one place",
+                    "render its picture");
+    }
+    parts_->keep_nothing();
+    const Image bits = march(view, {0, view.height}, SHOW_LIGHT, [&](int row) {
+        parts_->converge(progress, double(view.width) * view.height, double(view.width) * row);
+    });
+    LightShares out{view.width, view.height, std::vector<float>(bits.rgba.size() / sizeof(float))};
+    std::memcpy(out.shares.data(), bits.rgba.data(), bits.rgba.size());
+    return out;
+}
+
 Image Renderer::render_rows(const View& view, Rows rows) {
     parts_->keep_nothing();
-    return march(view, rows, [&](int) { parts_->converge({}, 0.0, 0.0); });
+    return march(view, rows, int(view.show), [&](int) { parts_->converge({}, 0.0, 0.0); });
 }
 
 Image Renderer::render_within(const View& view, double budget_ms) {
@@ -802,7 +868,7 @@ Image Renderer::render_rows_within(const View& view, Rows rows, double budget_ms
     parts_->require_lists();
     const auto deadline = deadline_in(budget_ms);
     parts_->keep_what_was_used_for(view, rows);
-    return march(view, rows, [&](int) { parts_->refine(deadline); });
+    return march(view, rows, int(view.show), [&](int) { parts_->refine(deadline); });
 }
 
 std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {

@@ -37,11 +37,24 @@ struct Camera {
 /// Where a camera that moved from `before` to `now` will be after as much time again, if it goes on alike.
 [[nodiscard]] Camera extrapolated(const Camera& before, const Camera& now);
 
-/// One light, white by default.
+/// What of a positional light there is around its middle.
+enum class LightShape : std::uint8_t {
+    sphere,     ///< of Light::radius, which may be 0: a point
+    rectangle,  ///< middle +- half_u +- half_v; it shines to both sides
+    disk,       ///< the ellipse with these half axes
+};
+
+/// One light, white by default. It shades as its middle does; its extent makes shadows soft, where a view
+/// asks for more than one shadow ray.
 struct Light {
     bool positional = false;
-    glm::dvec3 position{0.0};            ///< world, when positional
+    glm::dvec3 position{0.0};            ///< of the middle, world, when positional
     glm::dvec3 towards{0.4, 0.8, 0.45};  ///< direction to the light, when not
+    LightShape shape = LightShape::sphere;
+    double radius = 0.0;     ///< of a sphere
+    glm::dvec3 half_u{0.0};  ///< of a rectangle or a disk
+    glm::dvec3 half_v{0.0};
+    double angle = 0.0;  ///< of a directional light: radians from its middle to its edge, [0, pi / 2)
     glm::vec3 color{1.0F};
     float ambient = 0.25F;  ///< light from everywhere, as a share of the light's own
     bool operator==(const Light&) const = default;
@@ -72,6 +85,9 @@ struct View {
     /// Size of the voxels that a shadow ray meets, in those that its pixel shows: above 1 it reads, and asks
     /// for, coarser data of its own. [1/64, 64]
     double shadow_pixel_error = 1.0;
+    /// Rays a pixel to the light, [1, 512]: one goes to its middle, more to samples of all of it, which are
+    /// stratified and the same in every frame. Volumes take one.
+    int shadow_rays = 1;
     Show show = Show::surface;
     /// The camera and the light are told from this tile's low corner, in units of its side, instead of in the
     /// world: so a view is exact however deep it is.
@@ -157,6 +173,13 @@ struct Prefetched {
     bool more = false;         ///< there may be more to produce; not once the pools are full
 };
 
+/// What of the light each pixel of a picture gets.
+struct LightShares {
+    int width = 0;
+    int height = 0;
+    std::vector<float> shares;  ///< [0, 1], row 0 at the top; 0 where the surface turns its back; -1: nothing there
+};
+
 class MeshRaster;
 
 /// What is drawn as triangles beside the voxels (renderer/mesh/mesh_raster.h), in the same world.
@@ -168,6 +191,8 @@ struct Mix {
     /// The meshes are (also) the voxelized scene: then voxels that touch the triangle at a pixel are its own,
     /// and cast no shadow on it. Else contact shadows begin at the triangle.
     bool meshes_are_voxelized = false;
+    /// Only the meshes are shown; voxels do no more than cast shadows (Forest et al. 2009, section 3.1).
+    bool voxels_hidden = false;
     /// Rays run only from its first to its last face, or from the eye where more of its faces turn their back
     /// to the eye than their front (which is so inside a closed mesh). Pixels that it does not cover launch
     /// no ray. A voxel shows when the ray's way through it reaches into the proxy. Shadow rays do not know
@@ -214,6 +239,11 @@ public:
     /// @param progress  called after each pass with the share of pixels that are done, in [0, 1].
     [[nodiscard]] Image render(const View& view, const std::function<void(double)>& progress = {});
 
+    /// Of the same rays what arrives of the light, instead of colours.
+    /// @throws Error (Fault::usage) for volumes, whose light is not that of one place.
+    [[nodiscard]] LightShares light_shares(const View& view,
+                                           const std::function<void(double)>& progress = {});
+
     /// Renders what is there, and produces no longer than until `budget_ms` have passed since the call: first
     /// what most rays ask for. What is missing then is shown by the nearest ancestor that has a brick, or not
     /// at all. Rays are never cut short: a frame takes at least as long as marching it once.
@@ -249,7 +279,8 @@ public:
 private:
     struct Parts;
     /// Marches rows of a picture band by band; `march_band(row)` brings one to its end.
-    Image march(const View& view, Rows rows, const std::function<void(int)>& march_band);
+    /// @param shown  SHOW_* of shaders/interop/config.h.
+    Image march(const View& view, Rows rows, int shown, const std::function<void(int)>& march_band);
     std::unique_ptr<Parts> parts_;
 };
 

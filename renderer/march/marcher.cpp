@@ -108,11 +108,13 @@ const gl::Program& Marcher::primary_program(PassKind kind) {
 const gl::Program& Marcher::shadow_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
     const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
-    gl::Program& program = shadow_[std::size_t(progressive + 2 * meshes)];
+    const int soft = shadow_rays_ > 1 ? 1 : 0;
+    gl::Program& program = shadow_[std::size_t(progressive + 2 * meshes + 4 * soft)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
         if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
+        if (soft != 0) defines.emplace_back("SOFT_SHADOWS", "");
         program = gl::build_compute(shaders_, kind_.shadow, defines);
     }
     return program;
@@ -136,6 +138,9 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         image_ = gl::Buffer(pixels * sizeof(std::uint32_t), "picture");
         capacity_ = pixels;
     }
+    shadow_rays_ = view.area_light.x;
+    if (shadow_rays_ > 1 && shadow_sums_.size_bytes() < capacity_ * sizeof(glm::uvec2))
+        shadow_sums_ = gl::Buffer(capacity_ * sizeof(glm::uvec2), "sums of shadow rays");
     query_bits_offset_ = std::uint32_t(pool.slot_count());
     entry_count_ = tree.entry_count();
     const std::size_t usage_words = query_bits_offset_ + (3 * std::size_t(tree.entry_count()) + 31) / 32;
@@ -147,7 +152,8 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         usage_.fill(0);
     }
     interop::MarchView marched = view;
-    if (options_.block_starts && view.size_shadow.z != 0 && view.light.w == 0.0F) {
+    // They are told for one direction.
+    if (options_.block_starts && view.size_shadow.z != 0 && view.light.w == 0.0F && shadow_rays_ == 1) {
         const ShadowEnds ends = shadow_ends(view, tree);
         shadow_ends_.write(0, ends.ends.data(), ends.ends.size() * sizeof(float));
         marched.shadow_across = ends.across;
@@ -165,7 +171,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     starts_.write(0, starts.data(), starts.size() * sizeof(starts[0]));
     image_.fill(0, pixels * sizeof(std::uint32_t), std::uint32_t(view.band.w));
     first_pass_ = true;
-    show_tree_ = view.band.z != SHOW_SURFACE;
+    show_tree_ = view.band.z == SHOW_LEVELS || view.band.z == SHOW_BRICKS;
     pauses_ = 0;
     waiting_primary_ = 0;
     waiting_shadow_ = 0;
@@ -191,6 +197,7 @@ void Marcher::bind_mix() const {
 void Marcher::set_mix(const gl::Program& program) const {
     if (mix_.mesh_nearest != 0) {
         program.set("mesh_first_row", mix_.mesh_first_row);
+        program.set("voxels_hidden", int(mix_.voxels_hidden));
         program.set("mesh_shadows", int(mix_.mesh_shadows));
         program.set("mesh_own_height", mix_.mesh_own_height);
     }
@@ -205,6 +212,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     lists_.bind_storage(SSBO_LISTS);
     queries_.bind_storage(SSBO_QUERIES);
     if (!tile_blocks_) usage_.bind_storage(SSBO_USAGE);
+    if (shadow_rays_ > 1) shadow_sums_.bind_storage(SSBO_SHADOW_SUMS);
     image_.bind_storage(SSBO_IMAGE);
     starts_.bind_storage(SSBO_BLOCK_STARTS);
     glBindTextureUnit(TEXTURE_SHADOW_ENDS, shadow_ends_texture_.id());
@@ -234,7 +242,8 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     const bool waiting = counters.waiting_primary != 0 || counters.waiting_shadow != 0;
     const bool stalled = waiting && result.queries.empty() && counters.paused == 0 && primary == 0;
     pauses_ = counters.paused != 0 && result.queries.empty() ? pauses_ + 1 : 0;
-    if (stalled || pauses_ > (windows_.id() != 0 ? most_pauses_in_windows : most_pauses)) {
+    const int most = shadow_rays_ * (windows_.id() != 0 ? most_pauses_in_windows : most_pauses);
+    if (stalled || pauses_ > most) {
         throw Error(Fault::internal, "ray-marcher", "a ray did not come to an end",
                     "this is a fault of Cairn: please report the scene and the view");
     }

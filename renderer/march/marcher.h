@@ -60,6 +60,7 @@ struct MarchMix {
     GLuint mesh_nearest = 0;  ///< 0: no meshes
     GLuint mesh_surface = 0;
     int mesh_first_row = 0;     ///< of the picture, in those
+    bool voxels_hidden = false;
     bool mesh_shadows = false;  ///< voxels cast shadows on meshes
     float mesh_own_height =
         0.0F;               ///< voxels whose centres are no further over a mesh are its own; in their sides
@@ -74,6 +75,7 @@ struct MarchKind {
     std::string shadow = "march/shadow.comp.glsl";
     gl::Defines defines;
     std::function<void()> bind;  ///< before each pass; may be empty
+    bool soft_shadows = true;    ///< the shadow rays know SOFT_SHADOWS and SHOW_LIGHT
 };
 
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
@@ -101,6 +103,8 @@ public:
     /// without end.
     [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool,
                                       PassKind kind = PassKind::patient);
+
+    [[nodiscard]] bool has_soft_shadows() const { return kind_.soft_shadows; }
 
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
 
@@ -131,7 +135,7 @@ private:
     void set_mix(const gl::Program& program) const;
 
     std::array<gl::Program, 16> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * meshes + 8 * proxy
-    std::array<gl::Program, 4> shadow_;    ///< PROGRESSIVE + 2 * meshes
+    std::array<gl::Program, 8> shadow_;    ///< PROGRESSIVE + 2 * meshes + 4 * soft
     gl::Buffer view_;
     gl::Buffer windows_;  ///< empty where the tree has none
     gl::Buffer shadow_ends_;
@@ -139,7 +143,8 @@ private:
     gl::Buffer rays_;
     gl::Buffer lists_;
     gl::Buffer queries_;
-    gl::Buffer usage_;  ///< none with tile_blocks_
+    gl::Buffer usage_;        ///< none with tile_blocks_
+    gl::Buffer shadow_sums_;  ///< empty until a frame has soft shadows
     std::optional<TileBlocks> tile_blocks_;
     std::vector<std::uint32_t> block_stamps_;  ///< of slots, with tile_blocks_
     gl::Buffer image_;
@@ -157,6 +162,7 @@ private:
     bool first_pass_ = true;
     bool urgent_told_ = true;  // the last pass left queries by rank
     bool show_tree_ = false;
+    int shadow_rays_ = 1;  // of a pixel
     int pauses_ = 0;     // passes in a row in which rays only paused
     int list_side_ = 0;  // which half of the lists is read
 };

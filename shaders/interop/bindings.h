@@ -54,6 +54,7 @@
 #define SSBO_TILE_BLOCKS 5   // TILE_BLOCK_ENTRIES words a block (the pass that reduces them, which reads no block starts)
 #define SSBO_IMAGE 4    // RGBA8 a pixel
 #define SSBO_BLOCK_STARTS 5
+#define SSBO_SHADOW_SUMS 6  // uvec2 a pixel: samples of the light that are done, and bits of the light they found
 #define TEXTURE_NODES 0
 #define TEXTURE_BRICK_MASKS 1
 #define TEXTURE_BRICK_COLOR 2   // or coverage alone

@@ -139,6 +139,14 @@
 #define SHOW_SURFACE 0
 #define SHOW_LEVELS 1
 #define SHOW_BRICKS 2
+#define SHOW_LIGHT 3  // bits of a float instead of a colour: the share of the light that arrives, SHOWN_NOTHING: nowhere
+#define SHOWN_NOTHING (-1.0)
+
+// What a light with an extent is; in this order in renderer.h.
+#define LIGHT_CONE 0       // a sphere, or a directional light with an angle: even in solid angle
+#define LIGHT_RECTANGLE 1  // even in area
+#define LIGHT_DISK 2
+#define MAX_SHADOW_RAYS 512
 
 // Colours of tree levels: 0.5 + 0.5 cos(LEVEL_HUE * level + phase), one phase a channel.
 #define LEVEL_HUE 2.4

@@ -114,6 +114,9 @@ struct MarchView {
     vec4 shadow_across;    // ShadowEnds, when there are any
     vec4 shadow_down;
     ivec4 size_shadow;     // xy: pixels of the picture; z: 1 = trace shadow rays; w: 1 = there are ShadowEnds
+    vec4 light_u;          // area lights: half axis, from the light's middle; w: radius of a sphere
+    vec4 light_v;          // the other half axis; w: 1 - cosine of a directional light's angle
+    ivec4 area_light;      // x: shadow rays a pixel, 1 = a hard shadow of the light's middle; y: LIGHT_*
     ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone; z: SHOW_*;
                            // w: a pixel of the background
 };
@@ -190,7 +193,7 @@ static_assert(sizeof(NodeEntry) == 16, "GLSL sees another layout");
 static_assert(sizeof(BrickTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(FractalTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(BrickPair) == 12, "GLSL sees another layout");
-static_assert(sizeof(MarchView) == 192, "GLSL sees another layout");
+static_assert(sizeof(MarchView) == 240, "GLSL sees another layout");
 static_assert(sizeof(MarchWindow) == 80, "GLSL sees another layout");
 static_assert(sizeof(VolumeView) == 16, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");

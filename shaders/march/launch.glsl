@@ -58,6 +58,9 @@ Ray launched_ray(Launch launch, PixelRay seen) {
 
 // Puts a new ray where it begins; false when it meets nothing.
 bool enter(inout Ray ray, Launch launch, PixelRay seen) {
+#ifdef WITH_MESHES
+    if (voxels_hidden) return false;
+#endif
     ray.t = max(launch.start.near - seen.skipped, 0.0);
 #ifdef WITH_PROXY
     const vec2 span = proxy_span_at(launch.pixel);

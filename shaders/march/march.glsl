@@ -120,7 +120,9 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
 //
 // Threads that run side by side all pay for what any of them does in an innermost loop, so the loops are nested by how
 // seldom their work is needed: an occupied voxel, a tile, an empty cell.
-int march(inout Ray ray) {
+//
+// `turns` counts what a thread has done in this pass; it may march several rays.
+int march(inout Ray ray, inout int turns) {
     Place place;
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
@@ -131,7 +133,6 @@ int march(inout Ray ray) {
     place.entry = 0u;
 #endif
     place.summary = uvec2(0u);
-    int turns = 0;
     forget_trail();
     for (;;) {
         turns += 1 + VISIT_TURNS;
@@ -160,6 +161,11 @@ int march(inout Ray ray) {
             place.slot = -1;
         }
     }
+}
+
+int march(inout Ray ray) {
+    int turns = 0;
+    return march(ray, turns);
 }
 
 #include "march/brick_texels.glsl"

@@ -49,8 +49,28 @@ void store_pixel(ivec2 pixel, vec3 color, float alpha) {
     image_rgba8[pixel.y * view.size_shadow.x + pixel.x] = packUnorm4x8(vec4(srgb_from_linear(color), alpha));
 }
 
+// Is the share of the light to be shown, and no colour?
+bool shows_light() { return view.band.z == SHOW_LIGHT; }
+
+void store_light(ivec2 pixel, float share) {
+    image_rgba8[pixel.y * view.size_shadow.x + pixel.x] = floatBitsToUint(share);
+}
+
+// What arrives of the light at a surface, which may turn its back to it.
+float light_at(vec3 point, vec3 normal, float visibility) {
+    return dot(normal, direction_to_light(point)) > 0.0 ? visibility : 0.0;
+}
+
+float light_at_voxels(RayState state, PixelRay seen, float visibility) {
+    return light_at(seen.origin + seen.direction * state.normal_depth.w, facing_normal(state, seen.direction), visibility);
+}
+
 void write_pixel(ivec2 pixel, RayState state, float visibility) {
     const float alpha = 1.0 - state.color.a;
+    if (shows_light()) {
+        store_light(pixel, alpha > 0.0 ? light_at_voxels(state, pixel_ray(pixel), visibility) : SHOWN_NOTHING);
+        return;
+    }
     uint encoded = uint(view.band.w);
     if (alpha > 0.0) {
         const vec3 light = light_on_voxels(state, pixel_ray(pixel), visibility);
@@ -68,7 +88,9 @@ vec3 mesh_point(MeshPixel mesh, PixelRay seen) { return seen.origin + seen.direc
 // Is there light to be stopped on its way to the mesh, and does anyone see it?
 bool mesh_needs_shadow_ray(MeshPixel mesh, PixelRay seen, float transmittance) {
     if (!mesh_shadows || view.size_shadow.z == 0 || !is_there(mesh) || transmittance < OPAQUE_TRANSMITTANCE) return false;
-    return dot(turned_to_viewer(mesh.normal, seen.direction), direction_to_light(mesh_point(mesh, seen))) > 0.0;
+    // Shading looks at the interpolated normal; whether light arrives is told by the triangle.
+    const vec3 normal = shows_light() ? mesh.plane : turned_to_viewer(mesh.normal, seen.direction);
+    return dot(normal, direction_to_light(mesh_point(mesh, seen))) > 0.0;
 }
 
 // What stands behind the voxels: the mesh, or the background, whose alpha is 0.
@@ -80,6 +102,16 @@ vec4 lit_mesh(MeshPixel mesh, PixelRay seen, float mesh_visibility) {
 
 void write_pixel(ivec2 pixel, RayState state, float visibility, MeshPixel mesh, float mesh_visibility) {
     const PixelRay seen = pixel_ray(pixel);
+    if (shows_light()) {
+        const float on_mesh = light_at(mesh_point(mesh, seen), mesh.plane, mesh_visibility);
+        const float on_voxels = light_at_voxels(state, seen, visibility);
+        if (is_there(mesh)) {
+            store_light(pixel, mix(on_voxels, on_mesh, state.color.a));
+        } else {
+            store_light(pixel, state.color.a < 1.0 ? on_voxels : SHOWN_NOTHING);
+        }
+        return;
+    }
     vec4 color = state.color.a * lit_mesh(mesh, seen, mesh_visibility);
     const float alpha = 1.0 - state.color.a;
     if (alpha > 0.0) color += vec4(state.color.rgb * light_on_voxels(state, seen, visibility), alpha);

@@ -10,9 +10,15 @@
 // defines: TREE_N=3 BRICK_M=81 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2
 // defines: TREE_N=8 BRICK_M=16 MAX_LEVEL=3 HAS_COLOR=1 PROGRESSIVE=1 TRAVERSAL=2 HAS_CONSTANT=1 HAS_FINAL=1
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2 TILE_BLOCKS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2 WITH_MESHES SOFT_SHADOWS
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=0 WINDOWS=1 SOFT_SHADOWS
 #define RAYS_WIDEN 0
 #include "march/march.glsl"
 #include "march/shade.glsl"
+#ifdef SOFT_SHADOWS
+#include "march/area_light.glsl"
+layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { uvec2 shadow_sums[]; };
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -95,6 +101,69 @@ float voxel_side(float width) {
     return side;
 }
 
+// A ray from the receiver to the light, or on from where it stood. False when it must wait: then it is stored.
+bool trace(vec3 to_light, float reach, float width, float side, bool starts, inout RayState state, inout int turns) {
+    // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
+    // at a low angle stays among them for longer.
+    receiver_rise = max(dot(receiver_normal, to_light), 1e-3);
+    own_reach = own_height > 0.0 ? own_reach_of(side) : 0.0;
+    Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
+#if WINDOWS
+    ray.window = seen_window;
+#endif
+    bool inside = true;
+    if (starts) {
+        visibility = 1.0;
+        // Until here all voxels are its own: those that are not lie at least half a diagonal under their centres.
+        ray.t = min(max(own_height - 0.87 * side, 0.0) / receiver_rise, own_reach);
+        inside = enter_windows(ray);
+    } else {
+        load_position(ray, state);
+        visibility = uintBitsToFloat(state.voxel_t_weight.w);
+    }
+    if (inside && march(ray, turns) == MARCH_MISSING) {
+        store_position(state, ray);
+        state.voxel_t_weight.w = floatBitsToUint(visibility);
+        return false;
+    }
+    visibility = visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
+    return true;
+}
+
+// How much of the light reaches the receiver. False when a ray must wait.
+#ifdef SOFT_SHADOWS
+bool find_light(ivec2 pixel, uint index, float width, float side, bool starts, inout RayState state) {
+    const uint rays_a_pixel = uint(min(view.area_light.x, MAX_SHADOW_RAYS));
+    uint first = 0u;
+    float sum = 0.0;
+    if (!starts) {
+        const uvec2 stored = shadow_sums[index];
+        first = stored.x;
+        sum = uintBitsToFloat(stored.y);
+    }
+    int turns = 0;
+    for (uint i = first; i < rays_a_pixel; ++i) {
+        const LightSample there = light_sample(receiver, pixel, i);
+        if (dot(receiver_normal, there.direction) <= 0.0) continue;  // behind the receiver's horizon
+        if (!trace(there.direction, there.reach, width, side, starts || i != first, state, turns)) {
+            shadow_sums[index] = uvec2(i, floatBitsToUint(sum));
+            return false;
+        }
+        sum += visibility;
+    }
+    visibility = sum / float(rays_a_pixel);
+    return true;
+}
+#else
+bool find_light(ivec2 pixel, uint index, float width, float side, bool starts, inout RayState state) {
+    const vec4 light = light_there();
+    const vec3 to_light = direction_to_light(receiver);
+    const float reach = light.w > 0.5 ? distance(light.xyz, receiver) : end_of_occluders(to_light);
+    int turns = 0;
+    return trace(to_light, reach, width, side, starts, state, turns);
+}
+#endif
+
 void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= ray_count) return;
@@ -122,46 +191,18 @@ void main() {
     const float width = view.background.w * view.eye.w * (seen.skipped + depth);
     const float side = voxel_side(width);
     receiver = seen.origin + seen.direction * depth;
-    const vec3 to_light = direction_to_light(receiver);
-    // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
-    // at a low angle stays among them for longer.
-    receiver_rise = max(dot(receiver_normal, to_light), 1e-3);
     own_height = OWN_HEIGHT * side;
-    own_reach = own_reach_of(side);
 #ifdef WITH_MESHES
-    if (at_mesh) {  // whose place is known exactly
-        own_height = mesh_own_height * side;
-        if (mesh_own_height == 0.0) own_reach = 0.0;
-    }
+    if (at_mesh) own_height = mesh_own_height * side;  // its place is known exactly
 #endif
-
-    const vec4 light = light_there();
-    const float reach = light.w > 0.5 ? distance(light.xyz, receiver) : end_of_occluders(to_light);
-    Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
-#if WINDOWS
-    ray.window = seen_window;
-#endif
-    bool inside = true;
-    if (starts) {
-        visibility = 1.0;
-        // Until here all voxels are its own: those that are not lie at least half a diagonal under their centres.
-        ray.t = min(max(own_height - 0.87 * side, 0.0) / receiver_rise, own_reach);
-        inside = enter_windows(ray);
-    } else {
-        load_position(ray, state);
-        visibility = uintBitsToFloat(state.voxel_t_weight.w);
-    }
-
-    const int end = inside ? march(ray) : MARCH_DONE;
+    const bool found = find_light(pixel, index, width, side, starts, state);
     leave_report(index);
-    if (end == MARCH_MISSING) {
-        store_position(state, ray);
-        state.voxel_t_weight.w = floatBitsToUint(visibility);
+    if (!found) {
         rays[index] = state;
         lists[list_out + atomicAdd(counters.waiting_shadow, 1u)] = index;
         return;
     }
-    const float light_found = visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
+    const float light_found = visibility;
 #ifdef WITH_MESHES
     if (!at_mesh && mesh_needs_shadow_ray(mesh, seen, state.color.a)) {
         image_rgba8[index] = floatBitsToUint(light_found);

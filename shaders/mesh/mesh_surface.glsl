@@ -5,6 +5,7 @@
 layout(binding = TEXTURE_MESH_NEAREST) uniform sampler2D mesh_nearest;
 layout(binding = TEXTURE_MESH_SURFACE) uniform usampler2D mesh_surface;
 uniform int mesh_first_row;     // of the picture, in these textures
+uniform bool voxels_hidden;     // they are not shown, and cast shadows all the same
 uniform bool mesh_shadows;      // voxels cast shadows on meshes
 uniform float mesh_own_height;  // voxels whose centres are not so far over the plane are its own (in their sides)
 

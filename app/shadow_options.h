@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "app/options.h"
+#include "app/scene_input.h"
+#include "app/view_options.h"
+#include "renderer/renderer.h"
+#include "renderer/shadow/soft_shadow_map.h"
+#include "scenes/node_selection.h"
+
+namespace cairn::app {
+
+enum class ShadowMethod : std::uint8_t { voxel, soft_shadow_map, embree };
+
+struct ShadowOptions {
+    CommonOptions common;
+    ViewOptions view;
+    std::optional<ShadowMethod> method;
+    bool compare = false;  ///< with Embree
+    std::optional<std::filesystem::path> output;
+    std::optional<std::filesystem::path> difference;
+    std::optional<int> rays;
+    std::optional<renderer::Light> direction;  ///< from --light-direction
+    std::optional<glm::dvec2> rectangle;       ///< width and height
+    std::optional<double> disk;                ///< radius
+    std::optional<glm::dvec3> target;          ///< what a rectangle or a disk shines on
+    std::vector<std::string> occluders, receivers;
+    renderer::SoftShadowOptions map;
+    bool map_given = false;  ///< any of its options
+    int truth_samples = 256;
+};
+void add_shadow_options(CLI::App& verb, ShadowOptions& options);
+
+/// What a shadow is computed of: the nodes that were chosen, and the view with its light.
+struct ShadowTask {
+    SceneInput input;
+    scenes::NodeSelection occluders, receivers;
+    scenes::Snapshot shown;  ///< of both
+    renderer::View view;
+    bool is_soft = false;  ///< the light has an extent, and more than its middle is asked for
+};
+/// @throws Error (Fault::usage) when the options contradict each other; before anything is written.
+[[nodiscard]] ShadowTask make_shadow_task(const ShadowOptions& options);
+
+}  // namespace cairn::app

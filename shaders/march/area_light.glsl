@@ -1,0 +1,82 @@
+// Where the shadow rays of a pixel end: samples of a light that has an extent.
+//
+// Hammersley points, which are stratified in each coordinate and together, turned modulo 1 by an offset that is the
+// pixel's own (Cranley and Patterson 1976): neighbours take different samples, and a pixel takes the same ones in every
+// frame.
+
+struct LightSample {
+    vec3 direction;  // from the receiver, unit
+    float reach;     // how far it is
+};
+
+// Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg.
+uint hashed(uint x) {
+    const uint state = x * 747796405u + 2891336453u;
+    const uint word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+// The top 24 bits as a number in [0, 1).
+float unit_of(uint x) { return float(x >> 8u) * (1.0 / 16777216.0); }
+
+// Sample i of the pixel, in the unit square. `pixel` in the band.
+vec2 sample_place(ivec2 pixel, uint i) {
+    const uint x_turn = hashed(uint(pixel.x) + 16384u * uint(pixel.y + view.band.x));
+    const uint y_turn = hashed(x_turn ^ 0x9E3779B9u);
+    const float x = (float(i) + 0.5) / float(view.area_light.x);
+    return fract(vec2(x, unit_of(bitfieldReverse(i))) + vec2(unit_of(x_turn), unit_of(y_turn)));
+}
+
+// The unit square to the unit disk, strata staying compact (Shirley and Chiu 1997).
+vec2 on_disk(vec2 place) {
+    const vec2 p = 2.0 * place - 1.0;
+    const bool wide = abs(p.x) > abs(p.y);
+    const float radius = wide ? p.x : p.y;
+    const float part = (wide ? p.y : p.x) / (radius == 0.0 ? 1.0 : radius);
+    const float quarter = 0.78539816339;
+    const float angle = wide ? quarter * part : 2.0 * quarter - quarter * part;
+    return radius * vec2(cos(angle), sin(angle));
+}
+
+// The light's lengths in the voxels that the receiver is told in.
+float light_scale() {
+#if WINDOWS
+    return ldexp(1.0, N_SHIFT * (windows.count.x - 1 - seen_window));
+#else
+    return 1.0;
+#endif
+}
+
+LightSample flat_sample(vec3 centre, vec3 point, vec2 p) {
+    const vec3 way = centre + light_scale() * (p.x * view.light_u.xyz + p.y * view.light_v.xyz) - point;
+    const float reach = length(way);
+    return LightSample(way / reach, reach);
+}
+
+// In the cone that the light fills, even in solid angle: 1 - cosine grows with the square of the disk's radius.
+LightSample cone_sample(vec4 light, vec3 point, vec2 disk) {
+    const bool positional = light.w > 0.5;
+    const vec3 way = positional ? light.xyz - point : light.xyz;
+    const float far = length(way);
+    const float radius = light_scale() * view.light_u.w;
+    const float sine = min(radius / far, 1.0);
+    const float widest = positional ? sine * sine / (1.0 + sqrt(1.0 - sine * sine)) : view.light_v.w;
+    const float lost = widest * dot(disk, disk);
+    const float across = sqrt(widest * (2.0 - lost));
+    const vec3 axis = way / far;
+    const vec3 side = normalize(cross(axis, abs(axis.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+    const vec3 direction = normalize((1.0 - lost) * axis + across * (disk.x * side + disk.y * cross(axis, side)));
+    if (!positional) return LightSample(direction, 1e30);
+    // To the sphere's front: what is under its middle's height there is the other leg of a right triangle.
+    const float off_axis = far * length(cross(axis, direction));
+    const float under = radius * radius - off_axis * off_axis;
+    return LightSample(direction, max(dot(direction, way) - sqrt(max(under, 0.0)), 0.0));
+}
+
+LightSample light_sample(vec3 point, ivec2 pixel, uint i) {
+    const vec4 light = light_there();
+    const vec2 place = sample_place(pixel, i);
+    if (view.area_light.y == LIGHT_RECTANGLE) return flat_sample(light.xyz, point, 2.0 * place - 1.0);
+    if (view.area_light.y == LIGHT_DISK) return flat_sample(light.xyz, point, on_disk(place));
+    return cone_sample(light, point, on_disk(place));
+}
