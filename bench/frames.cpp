@@ -126,13 +126,15 @@ Entrant::Entrant(std::shared_ptr<renderer::Renderer> made, const renderer::View&
     first = renderer->statistics();
 }
 
-void measure_in_turn(std::vector<Entrant>& entrants, int runs) {
-    for (int run = 0; run < runs; ++run) {
+void measure_in_turn(std::vector<Entrant>& entrants, int runs, double budget_ms) {
+    double spent_ms = 0.0;
+    for (int run = 0; run < runs && spent_ms <= budget_ms * double(entrants.size()); ++run) {
         for (Entrant& entrant : entrants) {
             entrant.renderer->forget_picture();
             entrant.image = entrant.renderer->render(entrant.view);
             entrant.converged = entrant.renderer->statistics();
             entrant.samples_ms.push_back(entrant.converged.milliseconds);
+            spent_ms += entrant.samples_ms.back();
         }
     }
 }

@@ -53,7 +53,8 @@ struct Entrant {
     Entrant(renderer::Renderer made, const renderer::View& view);
     Entrant(std::shared_ptr<renderer::Renderer> made, const renderer::View& view);
 };
-void measure_in_turn(std::vector<Entrant>& entrants, int runs);
+/// @param budget_ms  of each, on average: no further round begins once it is spent.
+void measure_in_turn(std::vector<Entrant>& entrants, int runs, double budget_ms);
 
 /// The last two columns of every table of frames: "driver" and "threads".
 [[nodiscard]] std::vector<Cell> on_this_machine(std::vector<Cell> row);

@@ -26,7 +26,7 @@ std::vector<Cell> measure(const Subject& subject, int size, const ChartOptions& 
         brick_ms.push_back((first.produce_ms - first.tree_ms) /
                            double(std::max<std::uint64_t>(first.bricks_produced, 1)));
     }
-    measure_in_turn(last, 1);
+    measure_in_turn(last, 1, options.budget_ms);
     const renderer::FrameStatistics& first = last.back().first;
     const auto used = double(std::max<std::uint64_t>(last.back().converged.bricks_used, 1));
     return on_this_machine({subject.name(), subject.triangles(), std::int64_t(size), median(first_ms),

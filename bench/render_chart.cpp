@@ -107,7 +107,7 @@ public:
             tree.brick_pool_bytes = bytes;
             add({"pool", tree}, make(tree), 1.0);
         }
-        measure_in_turn(entrants_, options.runs);
+        measure_in_turn(entrants_, options.runs, options.budget_ms);
     }
 
     void add_rows(const std::string& name, const reference::ShadedImage& truth, Table& table) const {
@@ -153,8 +153,8 @@ Chart chart_render(const ChartOptions& options) {
                            "bricks_produced", "truth_ms",    "driver", "threads"};
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) {
-        scenes = {"builtin:tree"};
         add_real_scenes(chart, options, {"stanford_bunny_69k.glb"}, scenes);
+        if (scenes.empty()) scenes = {"builtin:knot"};
     }
     const int size = options.resolutions.empty() ? own_size : options.resolutions.front();
     double done = 0.0;

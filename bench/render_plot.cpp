@@ -82,8 +82,8 @@ public:
                      10, 1.0 - 48.0 / height);
         out +=
             "set logscale xy\nset format x \"%g\"\nset format y \"%g\"\nset grid lc \"#e4e4e4\" lt 1\n"
-            "set border lc \"#888888\"\nset tics nomirror\nset offsets graph 0.05,graph 0.08,graph "
-            "0.05,graph 0.05\n"
+            "set border lc \"#888888\"\nset tics nomirror\nset xtics add (2, 5, 20, 50, 200, 500, 2000)\n"
+            "set ytics add (0.002, 0.005, 0.02, 0.03, 0.05, 0.2, 0.3, 0.5)\n"
             "set xlabel \"milliseconds\" offset 0,0.3\n";
         for (const std::string& scene : scenes_) {
             out += panel(scene, 0);
@@ -118,10 +118,14 @@ private:
         for (const Point& point : front)
             blocks += fmt::format("{:.6g} {:.6g}\n", point.ms, point.errors[error]);
         blocks += "EOD\n$labels << EOD\n";
-        for (const Point& point : points_)
-            if (point.scene == scene && point.series == series_.front())
-                blocks +=
-                    fmt::format("{:.6g} {:.6g} {:.3g}\n", point.ms, point.errors[error], point.pixel_error);
+        // Where several pixel errors take the same levels, the first has the label.
+        double labelled = -1.0;
+        for (const Point& point : points_) {
+            if (point.scene != scene || point.series != series_.front() || point.errors[error] == labelled)
+                continue;
+            labelled = point.errors[error];
+            blocks += fmt::format("{:.6g} {:.6g} {:.3g}\n", point.ms, labelled, point.pixel_error);
+        }
         blocks += "EOD\n";
         std::string plots = "plot $front using 1:2 with lines lw 4 lc \"#dddddd\" title \"front\"";
         for (std::size_t s = 0; s < series_.size(); ++s) {
@@ -139,14 +143,29 @@ private:
                                  is_line ? 1.1 : 1.8, style.color, quoted(series_[s]));
         }
         plots +=
-            ", $labels using 1:2:3 with labels offset 1.4,0.6 font \"sans,9\" notitle, $front using 1:2 "
+            ", $labels using 1:2:3 with labels offset 0,-1 font \"sans,9\" notitle, $front using 1:2 "
             "with points pt 6 ps 2.2 lw 1.4 lc \"#000000\" notitle\n";
         std::string out = blocks;
         out += fmt::format("set title {} offset 0,-0.5\nset ylabel {} offset 1,0\n", quoted(scene),
                            quoted(error == 0 ? "RMSE of sRGB, 1 = white" : "silhouette: wrong area / area"));
-        out +=
-            error == 0 ? "unset key\n" : "set key outside right top vertical samplen 1.5 font \"sans,10\"\n";
+        out += error == 0 ? "unset key\n"
+                          : "set key at graph 1.02,1 left top vertical Left reverse samplen 1.5 "
+                            "font \"sans,10\"\n";
+        out += ranges(scene, error);
         return out + plots + "unset label\n";
+    }
+
+    [[nodiscard]] std::string ranges(const std::string& scene, std::size_t error) const {
+        constexpr double margin = 1.4;
+        std::array<double, 4> ends = {1e30, 0.0, 1e30, 0.0};
+        for (const Point& point : points_) {
+            if (point.scene != scene) continue;
+            ends = {std::min(ends[0], point.ms), std::max(ends[1], point.ms),
+                    std::min(ends[2], point.errors[error]), std::max(ends[3], point.errors[error])};
+        }
+        return fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", ends[0] / margin,
+                           ends[1] * margin, std::max(ends[2], 1e-6) / margin,
+                           std::max(ends[3], 1e-6) * margin);
     }
 
     std::vector<Point> points_;

@@ -28,13 +28,13 @@ Renderers renderers_of(const Subject& subject, const std::vector<int>& resolutio
 }
 
 void measure(const Subject& subject, const Renderers& renderers, const std::vector<int>& resolutions,
-             bool near, int runs, Table& table) {
+             bool near, const ChartOptions& options, Table& table) {
     renderer::View view = subject.view(picture, picture);
     if (near) view.camera.yfov /= narrowed;
     std::vector<Entrant> entrants;
     for (const auto& ours : renderers)
         entrants.emplace_back(ours, view);
-    measure_in_turn(entrants, runs);
+    measure_in_turn(entrants, options.runs, options.budget_ms);
     for (std::size_t i = 0; i < entrants.size(); ++i) {
         const Entrant& entrant = entrants[i];
         std::vector<double> growth;
@@ -68,7 +68,7 @@ Chart chart_resolution(const ChartOptions& options) {
         const Subject subject(scene);
         const Renderers renderers = renderers_of(subject, resolutions, options.shaders);
         for (const bool near : {false, true}) {
-            measure(subject, renderers, resolutions, near, options.runs, chart.table);
+            measure(subject, renderers, resolutions, near, options, chart.table);
             done += 0.5 / double(scenes.size());
             if (options.progress) options.progress(done);
         }

@@ -115,8 +115,12 @@ private:
     void run(std::vector<Entrant>& entrants, const renderer::View& view, double place, const char* varied) {
         RegularGrid::Result grid = grid_.march(view);
         std::vector<double> grid_ms;
-        for (int i = 0; i < options_.runs; ++i) {
-            measure_in_turn(entrants, 1);
+        double spent_ms = 0.0;
+        const double budget_ms = options_.budget_ms * double(entrants.size());
+        for (int i = 0; i < options_.runs && spent_ms <= budget_ms; ++i) {
+            measure_in_turn(entrants, 1, options_.budget_ms);
+            for (const Entrant& entrant : entrants)
+                spent_ms += entrant.samples_ms.back();
             grid_ms.push_back(grid_.march(view).milliseconds);
         }
         const double ms = median(grid_ms);
