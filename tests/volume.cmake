@@ -9,3 +9,5 @@ cairn_test(volume_file_test
   SOURCES volume_file_test.cpp scratch_folder.h
   LIBRARIES cairn::scenes fmt::fmt ZLIB::ZLIB
   TIMEOUT 60)
+cairn_test(volume_traversal_test
+  SOURCES volume_traversal_test.cpp volume_scenes.h gl_fixture.h LIBRARIES cairn::renderer fmt::fmt TIMEOUT 120)
