@@ -86,7 +86,7 @@ TEST_F(ShadowRays, PenumbraOfASquareComesToTheClosedForm) {
     SquareOverFloor scene;
     double before = 1.0;
     // The samples' error falls until the voxels' own, about their size on the floor, is left.
-    for (const auto& [rays, limit] : {std::pair{4, 0.16}, {16, 0.07}, {64, 0.03}, {256, 0.015}}) {
+    for (const auto& [rays, limit] : {std::pair{4, 0.14}, {16, 0.04}, {64, 0.013}, {256, 0.008}}) {
         View view = SquareOverFloor::view();
         view.shadow_rays = rays;
         const LightShares found = scene.shares(view);
