@@ -24,9 +24,9 @@ Value named(const char* option, const std::string& text, const Names<Value>& nam
     std::string known;
     for (const auto& [name, value] : names) {
         if (text == name) return value;
-        known += (known.empty() ? "" : ", ") + std::string(name);
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", name);
     }
-    throw Error(Fault::usage, option, fmt::format("there is no \"{}\"", text), "choose of " + known);
+    throw Error(Fault::usage, option, fmt::format("there is no \"{}\"", text), fmt::format("choose of {}", known));
 }
 
 double positive(const char* option, double value) {
