@@ -69,6 +69,13 @@ renderer::Show show_named(const std::string& name) {
                 "choose surface, levels or bricks");
 }
 
+renderer::LevelOfDetail level_of_detail_named(const std::string& name) {
+    if (name == "nearest") return renderer::LevelOfDetail::nearest;
+    if (name == "blended") return renderer::LevelOfDetail::blended;
+    throw Error(Fault::usage, "--level-of-detail", fmt::format("there is no \"{}\"", name),
+                "choose nearest or blended");
+}
+
 double pixel_error_of(const std::string& text) {
     const double pixels = parse_number("--pixel-error", text);
     if (pixels < least_pixel_error || pixels > largest_pixel_error) {
@@ -165,6 +172,11 @@ void add_view_options(CLI::App& verb, ViewOptions& options) {
         "the size of a voxel on the screen, in pixels, that rays\nlook for (default: 1)",
         [&options](const std::string& text) { options.view.pixel_error = pixel_error_of(text); });
     add_parsed_option(
+        verb, "--level-of-detail", "nearest|blended",
+        "one size of voxels at a time, or two that lead over, so\nthat nothing pops when the camera moves "
+        "(default: nearest)",
+        [&options](const std::string& text) { options.view.level_of_detail = level_of_detail_named(text); });
+    add_parsed_option(
         verb, "--show", "surface|levels|bricks",
         "the scene, or what its voxels are: their level in the\ntree, or the lines between bricks "
         "(default: surface)",
@@ -208,6 +220,7 @@ std::string render_command(const SceneOptions& scene, const ViewOptions& options
     if (view.shadow == renderer::Shadow::none) add("--shadow", "none");
     if (view.pixel_error != renderer::View{}.pixel_error)
         add("--pixel-error", fmt::format("{}", view.pixel_error));
+    if (view.level_of_detail == renderer::LevelOfDetail::blended) add("--level-of-detail", "blended");
     if (view.show != renderer::Show::surface) add("--show", std::string(show_names[int(view.show)]));
     if (options.tree.max_resolution != renderer::TreeOptions{}.max_resolution)
         add("--max-resolution", std::to_string(options.tree.max_resolution));

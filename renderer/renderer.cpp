@@ -127,7 +127,7 @@ struct Renderer::Parts {
 
 Renderer::Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options,
                    const gl::ShaderSource& shaders) {
-    const TreeShape shape = make_tree_shape(options.n, options.m, options.max_resolution);
+    const TreeShape shape = make_tree_shape(options.n, options.m, options.max_resolution, options.mips);
     auto content = std::make_unique<SurfaceContent>(shape, flatten(scene, snapshot, shape), shaders);
     parts_ = std::make_unique<Parts>(shape, std::move(content), options, shaders);
 }
@@ -274,6 +274,11 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
             "ask for rows that the picture has");
     }
     Parts& parts = *parts_;
+    const bool blended = view.level_of_detail == LevelOfDetail::blended;
+    if (blended && parts.shape.mips == 0) {
+        throw Error(Fault::usage, "view", "levels of detail cannot be blended without mip levels",
+                    "make the renderer with TreeOptions::mips");
+    }
     const auto start = Clock::now();
     const Tree::Counters before = parts.tree.counters();
     parts.statistics = FrameStatistics{};
@@ -285,7 +290,7 @@ Image Renderer::march(const View& view, Rows rows, const std::function<void(int)
     Image image{view.width, rows.count, {}};
     const int end = rows.first + rows.count;
     for (int row = rows.first; row < end; row += band_rows) {
-        marched.band = glm::ivec4(row, std::min(band_rows, end - row), int(view.show), 0);
+        marched.band = glm::ivec4(row, std::min(band_rows, end - row), int(view.show), blended ? 1 : 0);
         parts.marcher.begin_frame(marched, parts.tree, parts.pool);
         march_band(row);
         std::vector<std::uint8_t> band = parts.marcher.read_image();

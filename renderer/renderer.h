@@ -42,12 +42,22 @@ enum class Shadow : std::uint8_t { none, hard };
 /// What stands in for the surface's own colour, lit and shadowed like it.
 enum class Show : std::uint8_t {
     surface,  ///< nothing: the scene
-    levels,   ///< the tree level of the voxels that a pixel shows: shown_level_color()
+    levels,   ///< the size of the voxels that a pixel shows, as a tree level: shown_level_color()
     bricks,   ///< the scene, and lines where it passes from one brick into the next, in the level's colour
 };
 
-/// Linear. Level 0 is the root's brick; each level has voxels TreeOptions::n times finer.
-[[nodiscard]] glm::vec3 shown_level_color(int level);
+/// Linear. Level 0 is the root's brick; each level has voxels TreeOptions::n times finer, and mips lie
+/// between: with n = 4, level 1.5 has voxels twice as fine as level 1.
+[[nodiscard]] glm::vec3 shown_level_color(double level);
+
+/// How the size of the voxels follows the width of a pixel's cone (Crassin et al. 2008, section 4.3). Both
+/// use the same bricks.
+enum class LevelOfDetail : std::uint8_t {
+    nearest,  ///< the voxels of the tree level that is nearest to it, by ratio: sharpest, cheapest, and it
+              ///< pops
+    blended,  ///< between a level and the next the brick's mips lead over: nothing pops. Needs
+              ///< TreeOptions::mips
+};
 
 struct View {
     int width = 512;  ///< pixels, [1, 16384]
@@ -56,9 +66,9 @@ struct View {
     Light light;
     Shadow shadow = Shadow::hard;
     glm::vec3 background{0.80F, 0.84F, 0.90F};  ///< linear
-    /// Size of a voxel on the screen, in pixels: a ray takes the tree level whose voxels are nearest to it,
-    /// by ratio, as in mip mapping (Crassin et al. 2008, section 4.3).
+    /// Size of a voxel on the screen, in pixels, that level_of_detail follows.
     double pixel_error = 1.0;
+    LevelOfDetail level_of_detail = LevelOfDetail::nearest;
     Show show = Show::surface;
     bool operator==(const View&) const = default;
 };
@@ -74,6 +84,7 @@ struct TreeOptions {
     int n = 4;                  ///< children an axis: 2 or 4
     int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
+    bool mips = true;           ///< bricks hold mip levels, for LevelOfDetail::blended; a fifth more memory
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
 };

@@ -32,10 +32,12 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource&
 const gl::Program& Marcher::primary_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
     const int show_tree = show_tree_ ? 1 : 0;
-    gl::Program& program = primary_[std::size_t(progressive + 2 * show_tree)];
+    const int blended = blended_ ? 1 : 0;
+    gl::Program& program = primary_[std::size_t(progressive + 2 * show_tree + 4 * blended)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
+        defines.emplace_back("BLENDED", std::to_string(blended));
         defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
         program = gl::build_compute(shaders_, "march/primary.comp.glsl", defines);
     }
@@ -44,9 +46,11 @@ const gl::Program& Marcher::primary_program(PassKind kind) {
 
 const gl::Program& Marcher::shadow_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
-    gl::Program& program = shadow_[std::size_t(progressive)];
+    const int blended = blended_ ? 1 : 0;
+    gl::Program& program = shadow_[std::size_t(progressive + 2 * blended)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
+        defines.emplace_back("BLENDED", std::to_string(blended));
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
         program = gl::build_compute(shaders_, "march/shadow.comp.glsl", defines);
     }
@@ -78,6 +82,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     }
     view_.write(0, &view, sizeof(view));
     first_pass_ = true;
+    blended_ = view.band.w != 0;
     show_tree_ = view.band.z != SHOW_SURFACE;
     pauses_ = 0;
     waiting_primary_ = 0;
@@ -146,7 +151,7 @@ void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool
     program.set("shadow_list", list(1, list_side_ ^ 1));
     program.set("pass_number", round);
     program.set("usage_query_offset", query_bits_offset_);
-    program.set("pool_slots", pool.slots());
+    program.set("pool_levels", pool.levels());
     program.use();
     gl::dispatch_threads(dispatch.rays, group_size);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

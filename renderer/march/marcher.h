@@ -75,8 +75,8 @@ private:
 
     gl::ShaderSource shaders_;
     gl::Defines defines_;
-    std::array<gl::Program, 4> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE
-    std::array<gl::Program, 2> shadow_;   ///< PROGRESSIVE
+    std::array<gl::Program, 8> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * BLENDED
+    std::array<gl::Program, 4> shadow_;   ///< PROGRESSIVE + 2 * BLENDED
     gl::Buffer view_;
     gl::Buffer rays_;
     gl::Buffer lists_;
@@ -91,6 +91,7 @@ private:
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;
     bool show_tree_ = false;
+    bool blended_ = false;
     int pauses_ = 0;     // passes in a row in which rays only paused
     int list_side_ = 0;  // which half of the lists is read
 };

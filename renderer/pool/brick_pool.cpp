@@ -42,41 +42,83 @@ glm::ivec3 box_of(int count, int most) {
     return best;
 }
 
+/// Where the mips of as many slots as `slots` has lie (BrickPool::levels), and the size of it all in texels.
+struct Layout {
+    std::vector<glm::ivec4> levels;
+    glm::ivec3 size{0};
+
+    [[nodiscard]] std::size_t texels() const {
+        return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+    }
+};
+
+Layout lay_out(const TreeShape& shape, const glm::ivec3& slots) {
+    Layout layout;
+    layout.size = glm::ivec3(slots.x, slots.y, 0) * shape.mip_side(0);
+    const int count = slots.x * slots.y * slots.z;
+    for (int mip = 0; mip <= shape.mips; ++mip) {
+        const int side = shape.mip_side(mip);
+        const glm::ivec2 row(layout.size.x / side, layout.size.y / side);
+        layout.levels.emplace_back(row, layout.size.z, side);
+        layout.size.z += (count + row.x * row.y - 1) / (row.x * row.y) * side;
+    }
+    return layout;
+}
+
 }  // namespace
 
-BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
-    : has_color_(has_color), side_(shape.m + 2) {
-    const std::size_t blocks = std::size_t(shape.m / 4) * std::size_t(shape.m / 4) * std::size_t(shape.m / 4);
-    const std::size_t mask_words = blocks + (blocks + 63) / 64;
-    const std::size_t texels = std::size_t(side_) * std::size_t(side_) * std::size_t(side_);
-    const std::size_t slot_bytes = texels * (has_color ? 8 : 5) + mask_words * 8;
-    const gl::Limits limits = gl::query_limits();
-    const int most_a_side = limits.texture_3d_size / side_;
-    const std::size_t most_masks =
-        std::min(limits.texture_buffer_texels, limits.shader_storage_bytes / 8) / mask_words;
-    const std::size_t most = std::min<std::size_t>({bytes / slot_bytes, most_masks, 1U << 22U});
-    if (most == 0) {
-        throw Error(Fault::usage, "brick pool",
-                    fmt::format("{:.2f} MiB hold no brick of {}^3 voxels", double(bytes) / 0x1p20, shape.m),
-                    fmt::format("give it at least {:.2f} MiB",
-                                std::ceil(double(slot_bytes) / 0x1p20 * 100.0) / 100.0));
+int BrickPool::mask_words(const TreeShape& shape) {
+    int words = 0;
+    for (int mip = 0; mip <= shape.mips; ++mip) {
+        const int blocks = shape.mip_blocks_a_side(mip);
+        words += blocks * blocks * blocks;
     }
-    slots_ = box_of(int(most), most_a_side);
-    slot_count_ = slots_.x * slots_.y * slots_.z;
+    const int blocks = shape.mip_blocks_a_side(0);
+    return words + (blocks * blocks * blocks + 63) / 64;
+}
 
-    const glm::ivec3 size = slots_ * side_;
-    color_ = make_texture(has_color ? GL_RGBA8 : GL_R8, size, GL_NEAREST);
-    normal_ = make_texture(GL_RGB10_A2, size, GL_NEAREST);
-    masks_ = gl::Buffer(std::size_t(slot_count_) * mask_words * 8, "brick masks");
+BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes) : has_color_(has_color) {
+    const auto mask_bytes = std::size_t(mask_words(shape)) * 8;
+    const std::size_t texel_bytes = has_color ? 8 : 5;
+    auto bytes_of = [&](const Layout& layout, int slots) {
+        return layout.texels() * texel_bytes + std::size_t(slots) * mask_bytes;
+    };
+    const gl::Limits limits = gl::query_limits();
+    const std::size_t least = bytes_of(lay_out(shape, glm::ivec3(1)), 1);
+    if (bytes < least) {
+        throw Error(
+            Fault::usage, "brick pool",
+            fmt::format("{:.2f} MiB hold no brick of {}^3 voxels", double(bytes) / 0x1p20, shape.m),
+            fmt::format("give it at least {:.2f} MiB", std::ceil(double(least) / 0x1p20 * 100.0) / 100.0));
+    }
+    const std::size_t side = std::size_t(shape.mip_side(0));
+    const std::size_t most_masks =
+        std::min(limits.texture_buffer_texels, limits.shader_storage_bytes / 8) * 8 / mask_bytes;
+    std::size_t most = std::min<std::size_t>(
+        {bytes / (side * side * side * texel_bytes + mask_bytes), most_masks, std::size_t(1) << 22U});
+    // Mips lie in whole layers: what they take is known only when they lie there.
+    Layout layout;
+    for (;; most -= std::max<std::size_t>(most / 64, 1)) {
+        slots_ = box_of(int(most), limits.texture_3d_size / int(side));
+        slot_count_ = slots_.x * slots_.y * slots_.z;
+        layout = lay_out(shape, slots_);
+        if (layout.size.z <= limits.texture_3d_size && bytes_of(layout, slot_count_) <= bytes) break;
+    }
+    levels_ = layout.levels;
+    color_ = make_texture(has_color ? GL_RGBA8 : GL_R8, layout.size, GL_NEAREST);
+    normal_ = make_texture(GL_RGB10_A2, layout.size, GL_NEAREST);
+    masks_ = gl::Buffer(std::size_t(slot_count_) * mask_bytes, "brick masks");
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
     mask_texture_ = gl::TextureHandle(id);
     glTextureBuffer(id, GL_RG32UI, masks_.id());
-    size_bytes_ = std::size_t(slot_count_) * slot_bytes;
+    size_bytes_ = bytes_of(layout, slot_count_);
 }
 
-glm::ivec3 BrickPool::first_texel(int slot) const {
-    return glm::ivec3(slot % slots_.x, slot / slots_.x % slots_.y, slot / (slots_.x * slots_.y)) * side_;
+glm::ivec3 BrickPool::first_texel(int slot, int mip) const {
+    const glm::ivec4& level = levels_[std::size_t(mip)];
+    return glm::ivec3(slot % level.x, slot / level.x % level.y, slot / (level.x * level.y)) * level.w +
+           glm::ivec3(0, 0, level.z);
 }
 
 void BrickPool::bind_for_reading() const {

@@ -15,9 +15,14 @@ struct TreeShape {
     int n = 4;          ///< children an axis: 2 or 4
     int m = 16;         ///< voxels of a brick an axis, border not counted: 8, 16, 32 or 64
     int max_level = 4;  ///< level of the finest tiles; the root is level 0
+    int mips = 0;       ///< mip levels of a brick beside its own voxels, each twice as coarse: 0 or n_shift()
 
     [[nodiscard]] int n_shift() const { return n == 4 ? 2 : 1; }
     [[nodiscard]] int m_shift() const { return m == 8 ? 3 : m == 16 ? 4 : m == 32 ? 5 : 6; }
+    /// Voxels of a mip along an axis of a brick, border included.
+    [[nodiscard]] int mip_side(int mip) const { return (m >> mip) + 2; }
+    /// Blocks of 4^3 voxels along an axis of a mip; where there are fewer voxels, one.
+    [[nodiscard]] int mip_blocks_a_side(int mip) const { return (m >> mip) > 4 ? (m >> mip) / 4 : 1; }
     [[nodiscard]] int child_count() const { return n * n * n; }
     /// Voxels across the root cube at a level: log2.
     [[nodiscard]] int voxel_level(int level) const { return m_shift() + n_shift() * level; }
@@ -27,8 +32,9 @@ struct TreeShape {
 };
 
 /// The deepest shape whose voxels do not pass `max_resolution` across the root cube.
+/// @param with_mips  bricks hold mip levels up to the size of their parent's voxels.
 /// @throws Error (Fault::usage) when n, m or the resolution cannot work; says which values can.
-[[nodiscard]] TreeShape make_tree_shape(int n, int m, int max_resolution);
+[[nodiscard]] TreeShape make_tree_shape(int n, int m, int max_resolution, bool with_mips = false);
 
 /// A region of the regular subdivision: level 0 is the root cube, level l has n^l tiles across it.
 struct Tile {

@@ -17,9 +17,18 @@ constexpr std::size_t pair_capacity = std::size_t(1) << 18U;
 constexpr int turns_a_pair = 30000;
 constexpr unsigned group_size = 64;
 
+/// Of all its mips, border included.
+std::size_t voxels_a_brick(const TreeShape& shape) {
+    std::size_t voxels = 0;
+    for (int mip = 0; mip <= shape.mips; ++mip) {
+        const auto side = std::size_t(shape.mip_side(mip));
+        voxels += side * side * side;
+    }
+    return voxels;
+}
+
 std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
-    const auto side = std::size_t(shape.m) + 2;
-    return side * side * side * (has_color ? 9 : 6) * sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
+    return voxels_a_brick(shape) * (has_color ? 9 : 6) * sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
 }
 
 }  // namespace
@@ -30,18 +39,17 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     const std::size_t brick_bytes = scratch_bytes_a_brick(shape, surface.has_color);
     batch_ = int(std::clamp<std::size_t>(scratch_budget_bytes / brick_bytes, 1, 0xFFFF));
     gl::Defines defines = shape.defines(surface.has_color);
-    masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
-    summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
     resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
     defines.emplace_back("HAS_MASK", surface.has_mask ? "1" : "0");
+    masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
+    summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
     splat_ = gl::build_compute(shaders, "produce/splat.comp.glsl", defines);
 
     scratch_ = gl::Buffer(std::size_t(batch_) * brick_bytes, "brick scratch");
     scratch_.fill(0);
     // Masks of all voxels of a batch stand before their sums (scratch.glsl).
-    const std::size_t side = std::size_t(shape.m) + 2;
     for (gl::Program* program : {&splat_, &resolve_})
-        program->set("sums_offset", unsigned(std::size_t(batch_) * side * side * side * 2));
+        program->set("sums_offset", unsigned(std::size_t(batch_) * voxels_a_brick(shape) * 2));
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
     pair_buffer_ = gl::Buffer(pair_capacity * sizeof(interop::BrickPair), "brick pairs");
 }
@@ -57,28 +65,35 @@ std::vector<Produced> SurfaceProducer::produce(std::span<const BrickRequest> req
 void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
     for (auto& list : pairs_)
         list.clear();
-    const int side = shape_.m + 2;
-    const int rows = std::max(1, turns_a_pair / (side * (surface_.has_mask ? 81 : 17)));
-    const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
     for (std::size_t i = 0; i < requests.size(); ++i) {
         const Tile& tile = requests[i].tile;
-        const int shift = LATTICE_BITS - shape_.voxel_level(tile.level);
-        const glm::ivec2 low = glm::ivec2(tile.position.y, tile.position.z) * shape_.m - 1;  // of the border
-        for (const std::uint32_t triangle : lists_.list(cell_of(tile, shape_))) {
-            // Row r is touched when [r, r + 1] meets the triangle's extent: one more on each side of whole
-            // numbers.
-            const voxelizer::TriangleIndex::Box& box = lists_.box(triangle);
-            const glm::ivec2 first = glm::max(((glm::ivec2(box.low.y, box.low.z) - 1) >> shift) - low, 0);
-            const glm::ivec2 last =
-                glm::min((glm::ivec2(box.high.y, box.high.z) >> shift) - low, shape_.m + 1);
-            for (int z = first.y; z <= last.y; z += step.y) {
-                for (int y = first.x; y <= last.x; y += step.x) {
-                    const auto y_count = std::uint32_t(std::min(step.x, last.x - y + 1));
-                    const auto z_count = std::uint32_t(std::min(step.y, last.y - z + 1));
-                    pairs_[triangle / SURFACE_CHUNK_TRIANGLES].push_back(
-                        {triangle % SURFACE_CHUNK_TRIANGLES, std::uint32_t(i),
-                         std::uint32_t(y) | y_count << 8U | std::uint32_t(z) << 16U | z_count << 24U});
-                }
+        const std::span<const std::uint32_t> triangles = lists_.list(cell_of(tile, shape_));
+        for (int mip = 0; mip <= shape_.mips; ++mip)
+            gather_pairs_of_mip(tile, std::uint32_t(i), mip, triangles);
+    }
+}
+
+void SurfaceProducer::gather_pairs_of_mip(const Tile& tile, std::uint32_t number, int mip,
+                                          std::span<const std::uint32_t> triangles) {
+    const int side = shape_.mip_side(mip);
+    const int rows = std::max(1, turns_a_pair / (side * (surface_.has_mask ? 81 : 17)));
+    const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
+    const int shift = LATTICE_BITS - shape_.voxel_level(tile.level) + mip;
+    const glm::ivec3 low = glm::ivec3(tile.position) * (shape_.m >> mip) - 1;  // of the border
+    for (const std::uint32_t triangle : triangles) {
+        // Row r is touched when [r, r + 1] meets the triangle's extent: one more on each side of whole
+        // numbers.
+        const voxelizer::TriangleIndex::Box& box = lists_.box(triangle);
+        const glm::ivec3 first = glm::max(((box.low - 1) >> shift) - low, 0);
+        const glm::ivec3 last = glm::min((box.high >> shift) - low, side - 1);
+        if (first.x > last.x) continue;  // near the border of a coarser mip alone
+        for (int z = first.z; z <= last.z; z += step.y) {
+            for (int y = first.y; y <= last.y; y += step.x) {
+                const auto y_count = std::uint32_t(std::min(step.x, last.y - y + 1));
+                const auto z_count = std::uint32_t(std::min(step.y, last.z - z + 1));
+                pairs_[triangle / SURFACE_CHUNK_TRIANGLES].push_back(
+                    {triangle % SURFACE_CHUNK_TRIANGLES, number | std::uint32_t(mip) << 16U,
+                     std::uint32_t(y) | y_count << 8U | std::uint32_t(z) << 16U | z_count << 24U});
             }
         }
     }
@@ -106,7 +121,7 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     for (const BrickRequest& request : requests) {
         const int shift = LATTICE_BITS - shape_.voxel_level(request.tile.level);
         tiles.push_back({glm::ivec4(glm::ivec3(request.tile.position) * shape_.m, shift),
-                         glm::ivec4(pool.first_texel(request.slot), request.slot)});
+                         glm::ivec4(request.slot, 0, 0, 0)});
     }
     tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::BrickTile));
 
@@ -115,8 +130,10 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
         splat(chunk);
 
     const auto count = unsigned(requests.size());
-    const auto blocks = std::size_t(shape_.m / 4) * std::size_t(shape_.m / 4) * std::size_t(shape_.m / 4);
-    const auto side = std::size_t(shape_.m) + 2;
+    auto blocks = [&](int mip) {
+        const auto side = std::size_t(shape_.mip_blocks_a_side(mip));
+        return side * side * side;
+    };
     tiles_.bind_storage(SSBO_BRICK_TILES);
     scratch_.bind_storage(SSBO_BRICK_SCRATCH);
     pool.bind_for_writing();
@@ -126,11 +143,15 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
         program.set("tile_count", count);
         gl::dispatch_threads(threads, group_size);
     };
-    run(masks_, count * blocks);
-    run(summarize_, count * ((blocks + 63) / 64));
+    for (int mip = 0; mip <= shape_.mips; ++mip) {
+        masks_.set("mip", mip);
+        run(masks_, count * blocks(mip));
+    }
+    run(summarize_, count * ((blocks(0) + 63) / 64));
     glMemoryBarrier(
         GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // rays of an earlier pass may still read evicted slots
-    run(resolve_, count * side * side * side);
+    resolve_.set("pool_levels", pool.levels());
+    run(resolve_, count * voxels_a_brick(shape_));
     // The next batch reuses the scratch; rays fetch the texels.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);

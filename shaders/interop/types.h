@@ -83,12 +83,12 @@ struct NodeEntry {
 // A tile whose brick is being produced, and a triangle that may touch it.
 struct BrickTile {
     ivec4 low_shift;   // xyz: low corner, in voxels of the tile's level, without the border; w: log2 of a voxel's side
-    ivec4 slot_texel;  // xyz: first texel of the slot in the pool's textures (border included); w: slot
+    ivec4 slot;        // x: slot; the rest is not used
 };
 struct BrickPair {
     uint triangle;     // local to the bound surface chunk
-    uint tile;         // in the batch
-    uint rows;         // first y | count of y << 8 | first z << 16 | count of z << 24, border included
+    uint tile_mip;     // in the batch | mip << 16
+    uint rows;         // of the mip: first y | count of y << 8 | first z << 16 | count of z << 24, border included
 };
 
 // All lengths in voxels of the finest level, positions from the root cube's low corner.
@@ -103,7 +103,8 @@ struct MarchView {
     vec4 background;
     vec4 surface_color;    // base colour everywhere, when the pool holds none
     ivec4 size_shadow;     // xy: pixels of the picture; z: 1 = trace shadow rays
-    ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone; z: SHOW_*
+    ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone; z: SHOW_*;
+                           // w: 1 = blend levels of detail
 };
 
 // A ray between two passes. Primary: what it has gathered. Shadow: depth and color stay, `weight` becomes visibility.

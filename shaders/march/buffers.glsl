@@ -20,7 +20,6 @@ layout(binding = TEXTURE_BRICK_NORMAL) uniform sampler3D brick_normal;
 
 uniform uint pass_number;
 uniform uint usage_query_offset;  // word in usage[] where the query bits start
-uniform ivec3 pool_slots;         // slots along each axis of the pool's textures
 #if PROGRESSIVE
 uniform bool stand_in;            // the last pass of a frame: no ray may wait
 uniform uint entry_count;         // of the node pool

@@ -3,18 +3,31 @@
 struct Place {
     int slot;         // -1: none
     int tile_shift;   // log2 of the tile's side
+    int mip;          // of the brick: the one that is shown, or the finer of the two that are blended
 #if PROGRESSIVE
     int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in
 #endif
     uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
 };
 
-// Log2 of a voxel's side.
-int voxel_shift_of(Place place) {
+// Log2 of the side of the brick's own voxels.
+int own_shift_of(Place place) {
 #if PROGRESSIVE
     return place.brick_shift - M_SHIFT;
 #else
     return place.tile_shift - M_SHIFT;
+#endif
+}
+
+// Log2 of the side of the voxels that are shown (of the finer ones).
+int voxel_shift_of(Place place) { return own_shift_of(place) + place.mip; }
+
+// The finer of the mips that a cone of this width sees of a brick with voxels of this size.
+int mip_for(int own_shift, float width) {
+#if BLENDED
+    return blended_mip(own_shift, width);
+#else
+    return 0;
 #endif
 }
 
@@ -49,11 +62,12 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 
 // Finds the tile that the ray's cone asks for at its voxel: kd-restart.
 int descend(Ray ray, out Place place, out int empty_shift) {
-    const float width = ray.cone_base + ray.cone_slope * ray.t;
+    const float width = width_at(ray);
     uint entry = 0u;
     uvec4 node = texelFetch(nodes, 0);
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
+    place.mip = 0;
 #if PROGRESSIVE
     place.brick_shift = ROOT_SHIFT;
 #endif
@@ -96,6 +110,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #endif
         return DESCENT_MISSING;
     }
+    place.mip = mip_for(place.tile_shift - M_SHIFT, width);
     use_brick(place, brick_slot(node));
     return DESCENT_FOUND;
 }

@@ -7,7 +7,7 @@
 // With PROGRESSIVE, for frames that must not take long, rays also ask for the bricks of the nodes that they pass, without
 // waiting for them; and when time is up (stand_in), what is missing is shown by the nearest ancestor that has a brick.
 //
-// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth), HAS_COLOR and PROGRESSIVE.
+// Needs the defines TREE_N, BRICK_M, BRICK_MIPS, MAX_LEVEL (the tree's depth), HAS_COLOR, PROGRESSIVE and BLENDED.
 #include "march/buffers.glsl"
 #include "march/tree_cells.glsl"
 #include "march/ray.glsl"
@@ -17,18 +17,23 @@
 
 // An occupied voxel that a ray crosses.
 struct Sample {
-    int slot;
-    ivec3 voxel;          // in the brick, [0, BRICK_M)
-    vec3 middle;          // middle of the chord, brick voxels, [0, BRICK_M]
+    ivec3 texel;          // first texel of the brick's mip, border included
+    int mip;              // of the brick
+    ivec3 voxel;          // in the mip, [0, MIP_M(mip))
+    vec3 middle;          // middle of the chord, in voxels of the mip, [0, MIP_M(mip)]
     vec3 centre;          // of the voxel, from the root cube's low corner
     float t;              // distance of the chord's middle
     float side;           // of the voxel
+    float share;          // weight against the other mip's voxels in the same place, (0, 1]
 };
 
 // Takes one occupied voxel; false stops the ray.
 bool visit(inout Ray ray, Sample s);
 
 #include "march/queries.glsl"
+#if BLENDED
+#include "march/blended_size.glsl"
+#endif
 #include "march/descend.glsl"
 #include "march/skim.glsl"
 
@@ -60,6 +65,31 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
     }
 }
 
+// Takes the voxel of a mip around the ray's voxel, which must be occupied, and brings the ray behind it. `goes_on` says
+// whether there is more of the ray; false when visit() has stopped it.
+bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_on) {
+    const int voxel_shift = own_shift_of(place) + mip;
+    const ivec3 low = cell_low(ray.voxel, voxel_shift);
+    const ivec3 brick_low = cell_low(ray.voxel, own_shift_of(place) + M_SHIFT);
+    const float side = float(cell_side(voxel_shift));
+    const float t_in = ray.t;
+    Sample s;
+    s.texel = slot_texel(place.slot, mip);
+    s.mip = mip;
+    s.voxel = cell_of(low - brick_low, voxel_shift);
+    s.side = side;
+    s.share = share;
+    s.centre = vec3(low) + 0.5 * side;
+    goes_on = step_over(ray, voxel_shift);
+    s.t = 0.5 * (t_in + ray.t);
+    s.middle = clamp((ray.origin + ray.direction * s.t - vec3(brick_low)) / side, vec3(0.0), vec3(float(MIP_M(mip))));
+    return visit(ray, s);
+}
+
+#if BLENDED
+#include "march/blend.glsl"
+#endif
+
 // Marches until the ray is done, or until it misses a tile or pauses: then it stands where it resumes.
 //
 // Threads that run side by side all pay for what any of them does in an innermost loop, so the loops are nested by how
@@ -68,6 +98,7 @@ int march(inout Ray ray) {
     Place place;
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
+    place.mip = 0;
 #if PROGRESSIVE
     place.brick_shift = ROOT_SHIFT;
 #endif
@@ -77,22 +108,17 @@ int march(inout Ray ray) {
         ++turns;
         const int found = seek(ray, place, turns);
         if (found != SEEK_OCCUPIED) return found == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
-        const int voxel_shift = voxel_shift_of(place);
         const ivec3 tile = cell_of(ray.voxel, place.tile_shift);
-        const ivec3 low = cell_low(ray.voxel, voxel_shift);
-        const ivec3 brick_low = cell_low(ray.voxel, voxel_shift + M_SHIFT);
-        const float side = float(cell_side(voxel_shift));
-        const float t_in = ray.t;
-        Sample s;
-        s.slot = place.slot;
-        s.voxel = cell_of(low - brick_low, voxel_shift);
-        s.side = side;
-        s.centre = vec3(low) + 0.5 * side;
-        const bool goes_on = step_over(ray, voxel_shift);
-        s.t = 0.5 * (t_in + ray.t);
-        s.middle = clamp((ray.origin + ray.direction * s.t - vec3(brick_low)) / side, vec3(0.0),
-                         vec3(float(BRICK_M)));
-        if (!visit(ray, s) || !goes_on) return MARCH_DONE;
+        bool goes_on = true;
+#if BLENDED
+        if (needs_coarser(place, width_at(ray))) {
+            place.slot = -1;
+            continue;
+        }
+        if (!take_both(ray, place, goes_on) || !goes_on) return MARCH_DONE;
+#else
+        if (!take_voxel(ray, place, place.mip, 1.0, goes_on) || !goes_on) return MARCH_DONE;
+#endif
         if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) place.slot = -1;
     }
 }

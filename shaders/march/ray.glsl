@@ -27,6 +27,13 @@ Ray make_ray(vec3 origin, vec3 direction, float t_end, float cone_base, float co
     return ray;
 }
 
+// Width of the ray's cone where it is. Exactly the same wherever it is asked: what a ray compares it with must not depend on
+// how a compiler contracts the sum.
+float width_at(Ray ray) {
+    precise float width = ray.cone_base + ray.cone_slope * ray.t;
+    return width;
+}
+
 // Puts the ray where it enters the root cube, at ray.t or behind; false when it misses it.
 bool enter_root(inout Ray ray) {
     const vec3 side = vec3(float(ROOT_SIDE));

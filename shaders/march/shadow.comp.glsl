@@ -1,8 +1,8 @@
 // One thread is one waiting shadow ray: from what a primary ray saw, to the light.
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1
-// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0
-// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1
+// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=0 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0
+// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 BLENDED=1
+// defines: TREE_N=2 BRICK_M=8 BRICK_MIPS=1 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1
+// defines: TREE_N=4 BRICK_M=64 BRICK_MIPS=2 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 BLENDED=0
 #include "march/march.glsl"
 #include "march/shade.glsl"
 
@@ -17,6 +17,7 @@ float visibility;
 // The receiver: a voxel near its tangent plane, and near it, is its own surface and casts no shadow on it.
 vec3 receiver;
 vec3 receiver_normal;
+float own_side;  // of the voxels that the receiver is shown with; of the finer ones, when they are blended
 float own_height;
 float own_reach;
 float receiver_rise;  // of the ray over that plane, for each unit of its length
@@ -27,22 +28,22 @@ float own_reach_of(float side) { return side * clamp(2.5 / receiver_rise, 8.0, 6
 bool visit(inout Ray ray, Sample s) {
     float height = own_height;
     float reach = own_reach;
-#if PROGRESSIVE
-    if (stand_in) {  // its own voxels may be larger than they should be
+#if PROGRESSIVE || BLENDED
+    if (s.side > own_side) {  // what stands in, and the coarser of two mips, are larger than the receiver's finest
         height = max(height, OWN_HEIGHT * s.side);
         reach = max(reach, own_reach_of(s.side));
     }
 #endif
     const bool own = s.t < reach && dot(s.centre - receiver, receiver_normal) < height;
-    if (!own) visibility = behind(visibility, coverage_of(s));
+    if (!own) visibility = behind(visibility, coverage_of(s), s.share);
     return visibility > OPAQUE_TRANSMITTANCE;
 }
 
 // Side of the voxels that a cone of this width is shown with (see march()).
 float voxel_side(float width) {
-    float side = float(ROOT_SIDE >> M_SHIFT);
-    for (int level = 0; level < MAX_LEVEL && side > width; ++level) side /= float(TREE_N);
-    return side;
+    int own_shift = ROOT_SHIFT - M_SHIFT;
+    for (int level = 0; level < MAX_LEVEL && float(cell_side(own_shift)) > width; ++level) own_shift -= N_SHIFT;
+    return float(cell_side(own_shift + mip_for(own_shift, width)));
 }
 
 void main() {
@@ -61,6 +62,7 @@ void main() {
     // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
     // at a low angle stays among them for longer.
     receiver_rise = max(dot(receiver_normal, to_light), 1e-3);
+    own_side = side;
     own_height = OWN_HEIGHT * side;
     own_reach = own_reach_of(side);
 

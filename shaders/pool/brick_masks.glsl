@@ -1,6 +1,19 @@
 // How the masks of a brick lie in the pool, in 64-bit words (renderer/pool/brick_pool.h): the summary, one bit a block of
-// 4^3 voxels that is not empty; then a word a block, one bit a voxel that is occupied.
+// 4^3 voxels in which a voxel of any mip is occupied; then, for each mip, a word a block, one bit a voxel that is occupied.
+#include "pool/brick_levels.glsl"
+
 #define BLOCKS_A_SIDE (BRICK_M / 4)
 #define BLOCKS (BLOCKS_A_SIDE * BLOCKS_A_SIDE * BLOCKS_A_SIDE)
 #define SUMMARY_WORDS ((BLOCKS + 63) / 64)
-#define MASK_WORDS_A_SLOT (SUMMARY_WORDS + BLOCKS)
+#define MIP_BLOCKS_A_SIDE(mip) max(MIP_M(mip) / 4, 1)
+#define MIP_BLOCKS(mip) CUBE(MIP_BLOCKS_A_SIDE(mip))
+#define MASK_WORDS_A_SLOT                                                                              \
+    (SUMMARY_WORDS + BLOCKS + (BRICK_MIPS >= 1 ? MIP_BLOCKS(1) : 0) + (BRICK_MIPS >= 2 ? MIP_BLOCKS(2) : 0) + \
+     (BRICK_MIPS >= 3 ? MIP_BLOCKS(3) : 0))
+
+// Word of a slot at which the masks of a mip start.
+int first_mask_of(int mip) {
+    int first = SUMMARY_WORDS;
+    for (int k = 0; k < mip; ++k) first += MIP_BLOCKS(k);
+    return first;
+}
