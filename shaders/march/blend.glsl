@@ -7,15 +7,6 @@
 //
 // f is taken where the ray enters a coarse cell, and linear in the size: no logarithm, whose last bits drivers differ in.
 
-// Has the cone grown past what the place was chosen for? The root's coarsest mip goes on for ever.
-bool needs_coarser(Place place, float width) {
-#if PROGRESSIVE
-    if (place.brick_shift != place.tile_shift) return false;  // it stands in
-#endif
-    if (place.tile_shift == ROOT_SHIFT && place.mip == BRICK_MIPS - 1) return false;
-    return blended_size(own_shift_of(place), width) >= float(cell_side(voxel_shift_of(place) + 1));
-}
-
 bool is_occupied(ivec3 voxel, Place place, int mip) {
     const ivec3 b = place_in(voxel, own_shift_of(place) + mip, M_SHIFT - mip);
     const ivec3 c = cell_of(b, BLOCK_SHIFT);

@@ -31,6 +31,17 @@ int mip_for(int own_shift, float width) {
 #endif
 }
 
+#if BLENDED
+// Has the cone grown past what the place was chosen for? The root's coarsest mip goes on for ever.
+bool needs_coarser(Place place, float width) {
+#if PROGRESSIVE
+    if (place.brick_shift != place.tile_shift) return false;  // it stands in
+#endif
+    if (place.tile_shift == ROOT_SHIFT && place.mip == BRICK_MIPS - 1) return false;
+    return blended_size(own_shift_of(place), width) >= float(cell_side(voxel_shift_of(place) + 1));
+}
+#endif
+
 #define DESCENT_FOUND 0    // place holds a brick
 #define DESCENT_EMPTY 1    // nothing here: `empty_shift` is the side of the cell to step over
 #define DESCENT_MISSING 2  // the tile was asked for

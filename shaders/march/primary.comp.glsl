@@ -34,7 +34,12 @@ bool visit(inout Ray ray, Sample s) {
     color = tree_color(s, color, normal);
 #endif
     state.color.rgb += weight * color;
+#if BLENDED
+    // Each voxel's own: the mean of two mips' normals would turn over all at once while their shares change.
+    state.normal_depth.xyz += weight * facing(normal, ray.direction);
+#else
     state.normal_depth.xyz += weight * normal / max(length(normal), 1e-3);
+#endif
     if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
         state.voxel_t_weight.w = floatBitsToUint(weight);
         state.normal_depth.w = s.t;

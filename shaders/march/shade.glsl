@@ -29,16 +29,17 @@ vec3 direction_to_light(vec3 point) {
     return view.light.w > 0.5 ? normalize(view.light.xyz - point) : view.light.xyz;
 }
 
-// The gathered normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only
+// A gathered normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only
 // because its surface bends away in it, and is seen edge on.
-vec3 facing_normal(RayState state, vec3 direction) {
-    const float size = length(state.normal_depth.xyz);
+vec3 facing(vec3 gathered, vec3 direction) {
+    const float size = length(gathered);
     if (size < 1e-6) return -direction;
-    const vec3 normal = state.normal_depth.xyz / size;
+    const vec3 normal = gathered / size;
     const float away = dot(normal, direction);
     if (away <= 0.0) return normal;
     return away < SILHOUETTE_BEND ? normalize(normal - away * direction) : -normal;
 }
+vec3 facing_normal(RayState state, vec3 direction) { return facing(state.normal_depth.xyz, direction); }
 
 void write_pixel(ivec2 pixel, RayState state, float visibility) {
     const float alpha = 1.0 - state.color.a;

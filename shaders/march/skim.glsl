@@ -13,7 +13,7 @@ int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 }
 
 #define SKIM_OCCUPIED 0  // the ray's voxel is occupied
-#define SKIM_LEFT 1      // the ray left the tile
+#define SKIM_LEFT 1      // the ray left the tile, or the mips of it that it sees
 #define SKIM_ENDED 2     // the ray is done
 
 // Skips the empty cells of a brick.
@@ -39,6 +39,9 @@ int skim(inout Ray ray, Place place, inout int turns) {
         }
         if (!step_over(ray, shift)) return SKIM_ENDED;
         if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) return SKIM_LEFT;
+#if BLENDED
+        if (needs_coarser(place, width_at(ray))) return SKIM_LEFT;  // what is empty here may not be so there
+#endif
     }
     return SKIM_LEFT;
 }
