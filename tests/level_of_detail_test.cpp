@@ -93,6 +93,7 @@ TEST_F(LevelOfDetailTest, NothingPopsWhileTheConeGrowsSixteenfold) {
     Renderer renderer = make_renderer(scene, {.max_resolution = 1024});
     const int steps = 200;
     View view = view_of(scene, 96, 72, LevelOfDetail::blended);
+    view.shadow = renderer::Shadow::none;  // whose edges move with the voxels that cast them
     const Jumps blended = jumps_of(renderer, view, steps);
     view.level_of_detail = LevelOfDetail::nearest;
     const Jumps nearest = jumps_of(renderer, view, steps);
@@ -110,8 +111,9 @@ TEST_F(LevelOfDetailTest, MovingBackInSmallStepsChangesLittle) {
     Renderer renderer = make_renderer(scene, {.max_resolution = 1024});
     auto largest = [&](LevelOfDetail level_of_detail) {
         View view = view_of(scene, 64, 48, level_of_detail);
+        view.shadow = renderer::Shadow::none;
         const glm::dvec3 back = view.camera.eye - view.camera.target;
-        const int steps = 400;
+        const int steps = 200;
         double most = 0.0;
         Image before;
         for (int step = 0; step <= steps; ++step) {
@@ -144,9 +146,14 @@ TEST_P(BlendedShapes, NoVoxelIsNarrowerThanThePixelMeansTheFinestAlone) {
     Renderer renderer = make_renderer(scene, options(64));
     View view = view_of(scene, 120, 90, LevelOfDetail::blended);
     view.pixel_error = 1e-6;
+    view.shadow = renderer::Shadow::none;
     const Image blended = renderer.render(view);
     view.level_of_detail = LevelOfDetail::nearest;
-    EXPECT_EQ(change_between(blended, renderer.render(view)).largest, 0);
+    const Image nearest = renderer.render(view);
+    // The normals of the voxels are turned to the viewer one by one, or together: that shows at silhouettes.
+    EXPECT_LE(change_between(blended, nearest).largest, 12) << change_between(blended, nearest).where;
+    for (std::size_t i = 3; i < blended.rgba.size(); i += 4)
+        ASSERT_EQ(blended.rgba[i], nearest.rgba[i]) << "opacity of pixel " << i / 4;
 }
 
 TEST_P(BlendedShapes, PictureDoesNotDependOnHowOftenRaysAreInterrupted) {
@@ -191,33 +198,31 @@ TEST_P(BlendedShapes, ClosedSurfaceLetsNoBackgroundThrough) {
 }
 
 INSTANTIATE_TEST_SUITE_P(NAndM, BlendedShapes,
-                         ::testing::Values(std::pair(4, 16), std::pair(4, 8), std::pair(2, 8),
-                                           std::pair(2, 16), std::pair(4, 32)),
+                         ::testing::Values(std::pair(4, 16), std::pair(4, 8), std::pair(2, 8)),
                          [](const auto& shape) {
                              return fmt::format("N{}M{}", shape.param.first, shape.param.second);
                          });
 
 TEST_F(LevelOfDetailTest, BricksOfAllSizesBlendToTheSamePicture) {
-    // The same voxels, cut into tiles of 8, 16 and 32 of them: where one brick ends shows nowhere. N = 2, so
-    // that the levels of all three trees have voxels of the same sizes.
+    // The same voxels, cut into tiles of 8, 16 and 32 of them: where one brick ends, and where one level
+    // passes into the next, shows nowhere. N = 2, so that the levels of all three trees have voxels of the
+    // same sizes.
     const scenes::Scene scene = ball_over_floor();
-    for (const LevelOfDetail level_of_detail : {LevelOfDetail::nearest, LevelOfDetail::blended}) {
+    auto render = [&](int m, LevelOfDetail level_of_detail) {
         View view = view_of(scene, 160, 120, level_of_detail);
-        view.camera.eye = glm::mix(view.camera.target, view.camera.eye, 0.6);  // several levels are in view
+        view.camera.eye = glm::mix(view.camera.target, view.camera.eye, 0.6);
         view.pixel_error = 4.0;
-        // Where the level changes, rays of larger tiles change later: up to a tile behind.
-        const Image large = make_renderer(scene, {.n = 2, .m = 32, .max_resolution = 512}).render(view);
-        for (const int m : {8, 16}) {
-            const Image small = make_renderer(scene, {.n = 2, .m = m, .max_resolution = 512}).render(view);
-            std::size_t differ = 0;
-            for (std::size_t i = 0; i < small.rgba.size(); ++i)
-                differ += std::abs(int(small.rgba[i]) - int(large.rgba[i])) > 1 ? 1 : 0;
-            fmt::print("M = {}, {}: {} of {} channels differ by more than 1; mean {:.4f}, largest {}\n", m,
-                       level_of_detail == LevelOfDetail::nearest ? "nearest" : "blended", differ,
-                       small.rgba.size(), change_between(small, large).mean,
-                       change_between(small, large).largest);
-        }
+        return make_renderer(scene, {.n = 2, .m = m, .max_resolution = 512}).render(view);
+    };
+    const Image large = render(32, LevelOfDetail::blended);
+    for (const int m : {8, 16}) {
+        const Change change = change_between(large, render(m, LevelOfDetail::blended));
+        EXPECT_LE(change.largest, 1) << "M = " << m << ", " << change.where;
     }
+    // Several levels are in view: nearest, a tile has one from end to end, and larger ones pass into the next
+    // later.
+    EXPECT_GT(change_between(render(32, LevelOfDetail::nearest), render(8, LevelOfDetail::nearest)).largest,
+              20);
 }
 
 TEST_F(LevelOfDetailTest, BlendingNeedsMips) {
