@@ -175,7 +175,10 @@ void add_view_options(CLI::App& verb, ViewOptions& options) {
         verb, "--level-of-detail", "nearest|blended",
         "one size of voxels at a time, or two that lead over, so\nthat nothing pops when the camera moves "
         "(default: nearest)",
-        [&options](const std::string& text) { options.view.level_of_detail = level_of_detail_named(text); });
+        [&options](const std::string& text) {
+            options.view.level_of_detail = level_of_detail_named(text);
+            options.tree.mips = options.view.level_of_detail == renderer::LevelOfDetail::blended;
+        });
     add_parsed_option(
         verb, "--show", "surface|levels|bricks",
         "the scene, or what its voxels are: their level in the\ntree, or the lines between bricks "

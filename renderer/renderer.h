@@ -84,7 +84,7 @@ struct TreeOptions {
     int n = 4;                  ///< children an axis: 2 or 4
     int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
-    bool mips = true;           ///< bricks hold mip levels, for LevelOfDetail::blended; a fifth more memory
+    bool mips = false;          ///< bricks hold mip levels, for LevelOfDetail::blended; a fifth more memory
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
 };

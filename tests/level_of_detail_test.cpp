@@ -42,7 +42,8 @@ Change change_between(const Image& a, const Image& b) {
     return change;
 }
 
-Renderer make_renderer(const scenes::Scene& scene, const TreeOptions& options = {}) {
+Renderer make_renderer(const scenes::Scene& scene, TreeOptions options, bool mips = true) {
+    options.mips = mips;
     return Renderer(scene, scenes::take_snapshot(scene), options);
 }
 
@@ -227,7 +228,7 @@ TEST_F(LevelOfDetailTest, BricksOfAllSizesBlendToTheSamePicture) {
 
 TEST_F(LevelOfDetailTest, BlendingNeedsMips) {
     const scenes::Scene scene = ball_over_floor();
-    Renderer renderer = make_renderer(scene, {.max_resolution = 64, .mips = false});
+    Renderer renderer = make_renderer(scene, {.max_resolution = 64}, false);
     const View view = view_of(scene, 16, 16, LevelOfDetail::blended);
     try {
         (void)renderer.render(view);
@@ -240,8 +241,8 @@ TEST_F(LevelOfDetailTest, BlendingNeedsMips) {
 TEST_F(LevelOfDetailTest, MipsDoNotChangeTheNearestLevelsPicture) {
     const scenes::Scene scene = scenes::make_builtin("knot");
     const View view = view_of(scene, 160, 120, LevelOfDetail::nearest);
-    const Image with = make_renderer(scene, {.mips = true}).render(view);
-    const Image without = make_renderer(scene, {.mips = false}).render(view);
+    const Image with = make_renderer(scene, {}, true).render(view);
+    const Image without = make_renderer(scene, {}, false).render(view);
     EXPECT_EQ(with.rgba, without.rgba);
 }
 

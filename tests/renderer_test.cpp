@@ -287,7 +287,7 @@ TEST_F(RendererTest, LongRaysPauseAndStillEndWithTheSamePicture) {
     view.camera.target = {1.2, 1e-4, 0.0};
     view.camera.yfov = 1e-7;
     view.shadow = renderer::Shadow::none;
-    Renderer renderer = make_renderer(scene, {.max_resolution = 65536, .brick_pool_bytes = 320U << 20U});
+    Renderer renderer = make_renderer(scene, {.max_resolution = 65536});
     const Image first = renderer.render(view);
     const Image second = renderer.render(view);
     EXPECT_EQ(renderer.statistics().bricks_produced, 0U);
