@@ -5,6 +5,7 @@
 #include "app/exit_code.h"
 #include "app/terminal.h"
 #include "app/verbs.h"
+#include "app/volume_input.h"
 #include "base/error.h"
 #include "scenes/builtin.h"
 
@@ -16,6 +17,7 @@ std::string footer() {
     for (const scenes::Builtin& builtin : scenes::builtins()) {
         text += fmt::format("  builtin:{:<14}{}\n", builtin.name, builtin.description);
     }
+    text += builtin_volumes_help();
     text +=
         "\nExit codes: 0 done, 1 a comparison found a difference, 2 wrong usage, 3 bad input file,\n"
         "4 no usable OpenGL 4.5 context, 5 out of memory, 130 interrupted.\n"

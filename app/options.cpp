@@ -74,7 +74,9 @@ void add_report_options(CLI::App& verb, ReportOptions& options) {
 }
 
 void add_scene_argument(CLI::App& verb, SceneOptions& options) {
-    verb.add_option("SCENE", options.scene, "a .gltf or .glb file, or builtin:NAME")
+    verb.add_option("SCENE", options.scene,
+                    "a .gltf or .glb file, or builtin:NAME; where the verb\ntakes volumes, a .mha, .mhd, "
+                    ".nii or .nii.gz file too")
         ->required()
         ->type_name("");
     verb.add_flag("--trust-paths", options.trust_paths,

@@ -6,6 +6,7 @@
 
 #include "app/progress.h"
 #include "app/terminal.h"
+#include "app/volume_input.h"
 #include "base/error.h"
 #include "scenes/load.h"
 
@@ -31,6 +32,9 @@ int animation_called(const scenes::Scene& scene, const std::string& name) {
 }  // namespace
 
 SceneInput load_input(const SceneOptions& options, bool quiet) {
+    if (is_volume(options.scene))
+        throw Error(Fault::usage, options.scene, "this verb needs surfaces, and that is a volume",
+                    "\"cairn render\", \"cairn view\" and \"cairn info\" take volumes");
     const Progress progress("loading", quiet);
     SceneInput input{scenes::load(options.scene, {.trust_paths = options.trust_paths}), {}};
     scenes::When when;

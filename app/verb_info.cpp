@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -9,6 +10,8 @@
 #include "app/report.h"
 #include "app/scene_input.h"
 #include "app/verbs.h"
+#include "app/volume_input.h"
+#include "scenes/volume.h"
 
 namespace cairn::app {
 namespace {
@@ -61,7 +64,31 @@ Json list_scenes(const scenes::Scene& scene) {
     return list;
 }
 
+ExitCode run_volume(const CommonOptions& options) {
+    Report report(options.report);
+    report.add("scene", options.scene.scene);
+    scenes::Bounds bounds;
+    std::vector<std::string> warnings;
+    if (scenes::is_volume_file(options.scene.scene)) {
+        const scenes::Volume volume = scenes::load_volume(options.scene.scene);
+        report.add("samples", json_of(volume.size));
+        report.add("spacing", json_of(volume.spacing));
+        report.add("least_value", volume.low);
+        report.add("greatest_value", volume.high);
+        bounds = volume.bounds();
+        warnings = volume.warnings;
+    } else {
+        bounds = bounds_of(*load_volume_input(options.scene.scene, {}, 1).field);
+    }
+    report.add("bounds_low", json_of(bounds.low));
+    report.add("bounds_high", json_of(bounds.high));
+    report.add("warnings", warnings);
+    report.finish();
+    return ExitCode::done;
+}
+
 ExitCode run(const CommonOptions& options) {
+    if (is_volume(options.scene.scene)) return run_volume(options);
     const SceneInput input = load_input(options.scene, options.report.quiet);
     const scenes::Scene& scene = input.scene;
     const scenes::Snapshot& snapshot = input.snapshot;

@@ -2,18 +2,21 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/driver.h"
+#include "app/fractal.h"
 #include "app/measure.h"
 #include "app/png.h"
 #include "app/progress.h"
 #include "app/report.h"
-#include "app/scene_input.h"
+#include "app/subject.h"
 #include "app/verbs.h"
 #include "app/view_options.h"
+#include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
 
 namespace cairn::app {
@@ -27,12 +30,24 @@ struct Options {
     CommonOptions common;
     std::optional<std::filesystem::path> output;
     ViewOptions view;
+    std::optional<std::string> mesh;   ///< a scene that is drawn as triangles
+    std::optional<std::string> proxy;  ///< a scene whose faces bound the rays
+    bool mesh_shadows = false;
 };
 
 void add_options(CLI::App& verb, Options& options) {
     add_output_option(verb, options.output, {".png"},
                       fmt::format("the picture (default: {} in the current folder)", default_output));
     add_view_options(verb, options.view);
+    verb.add_option("--mesh", options.mesh,
+                    "another scene, or the same, to draw as triangles in the\nsame picture, without voxels")
+        ->type_name("SCENE");
+    verb.add_flag("--mesh-shadows", options.mesh_shadows, "let the voxels cast shadows on those triangles")
+        ->needs("--mesh");
+    verb.add_option("--proxy", options.proxy,
+                    "a closed mesh: only what lies inside it is shown of the\nvoxels")
+        ->type_name("SCENE");
+    add_zoom_option(verb, options.view.zoom);
     add_common_options(verb, options.common);
 }
 
@@ -42,6 +57,7 @@ double converged_frame_ms(renderer::Renderer& renderer, const renderer::View& vi
     std::vector<double> frames;
     double total = 0.0;
     while (frames.size() < measured_frames && total < measuring_ms) {
+        renderer.forget_picture();
         (void)renderer.render(view);
         frames.push_back(renderer.statistics().milliseconds);
         total += frames.back();
@@ -51,6 +67,31 @@ double converged_frame_ms(renderer::Renderer& renderer, const renderer::View& vi
     return *middle;
 }
 
+/// Another scene as triangles: in its rest pose, unless it is the one that is voxelized.
+std::shared_ptr<renderer::MeshRaster> load_mesh(const std::string& scene, const Options& options) {
+    SceneOptions input = options.common.scene;
+    if (scene != input.scene) {
+        input = SceneOptions{};
+        input.scene = scene;
+        input.trust_paths = options.common.scene.trust_paths;
+    }
+    const SceneInput loaded = load_input(input, options.common.report.quiet);
+    return std::make_shared<renderer::MeshRaster>(loaded.scene, loaded.snapshot,
+                                                  options.common.driver.shaders);
+}
+
+renderer::Mix load_mix(const Options& options, Report& report) {
+    renderer::Mix mix;
+    if (options.mesh) {
+        mix.meshes = load_mesh(*options.mesh, options);
+        mix.mesh_shadows = options.mesh_shadows;
+        mix.meshes_are_voxelized = *options.mesh == options.common.scene.scene;
+        report.add("mesh_triangles", mix.meshes->triangle_count());
+    }
+    if (options.proxy) mix.proxy = load_mesh(*options.proxy, options);
+    return mix;
+}
+
 ExitCode run(const Options& options) {
     const bool quiet = options.common.report.quiet;
     const std::filesystem::path output = options.output.value_or(default_output);
@@ -58,16 +99,16 @@ ExitCode run(const Options& options) {
     Report report(options.common.report);
     report.add("scene", options.common.scene.scene);
     Stopwatch watch;
-    auto input = std::make_unique<SceneInput>(load_input(options.common.scene, quiet));
+    auto subject = std::make_unique<Subject>(options.common.scene, options.view, quiet);
     report.add("load_ms", watch.lap_ms());
-    report.add("triangles", input->snapshot.triangle_count);
-    const renderer::View view = view_of(options.view, input->snapshot);
+    subject->add_figures(report);
+    const renderer::View view = subject->view(options.view);
 
     const Driver driver(options.common.driver);
     report.add("context_ms", watch.lap_ms());
-    renderer::Renderer renderer(input->scene, input->snapshot, options.view.tree,
-                                options.common.driver.shaders);
-    input.reset();  // the renderer has its own copy of what it needs: do not pay twice
+    renderer::Renderer renderer = subject->make_renderer(options.view, options.common.driver.shaders);
+    renderer.set_mix(load_mix(options, report));
+    subject.reset();  // the renderer has its own copy of what it needs: do not pay twice
     report.add("setup_ms", watch.lap_ms());
 
     renderer::Image image;
@@ -90,12 +131,17 @@ ExitCode run(const Options& options) {
     report.add("width", view.width);
     report.add("height", view.height);
     report.add("passes", first.passes);
+    report.add("rays_launched", first.rays_launched);
     report.add("tile_queries", first.tile_queries);
     report.add("bricks_produced", first.bricks_produced);
     report.add("bricks_evicted", first.bricks_evicted);
+    report.add("bricks_relinked", first.bricks_relinked);
+    report.add("bricks_cached", first.bricks_cached);
+    report.add("bricks_restored", first.bricks_restored);
     report.add("bricks_resident", renderer.statistics().bricks_resident);
     report.add("node_pool_bytes", first.node_pool_bytes);
     report.add("brick_pool_bytes", first.brick_pool_bytes);
+    report.add("brick_cache_bytes", first.brick_cache_bytes);
     report.add("peak_rss_bytes", peak_rss_bytes());
     report.add("driver", driver.name());
     report.add("backend", driver.backend());

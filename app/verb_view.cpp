@@ -13,12 +13,13 @@
 #include <GLFW/glfw3.h>
 
 #include "app/driver.h"
+#include "app/fractal.h"
 #include "app/measure.h"
 #include "app/parse.h"
 #include "app/png.h"
 #include "app/progress.h"
 #include "app/report.h"
-#include "app/scene_input.h"
+#include "app/subject.h"
 #include "app/verbs.h"
 #include "app/view_options.h"
 #include "app/viewer/canvas.h"
@@ -203,9 +204,13 @@ ExitCode run(const Options& options) {
     const bool quiet = options.report.quiet;
     Report report(options.report);
     report.add("scene", options.scene.scene);
-    auto input = std::make_unique<SceneInput>(load_input(options.scene, quiet));
-    const renderer::View view = view_of(options.view, input->snapshot);
-    const double size = scene_size(input->snapshot.bounds);
+    if (is_fractal(options.scene)) {
+        throw Error(Fault::usage, options.scene.scene, "the viewer's cameras do not reach its depth",
+                    "render it: cairn render builtin:fractal --zoom K");
+    }
+    auto subject = std::make_unique<Subject>(options.scene, options.view, quiet);
+    const renderer::View view = subject->view(options.view);
+    const double size = scene_size(subject->bounds());
 
     const std::unique_ptr<gl::Window> window = gl::create_window(
         "cairn view " + options.scene.scene + " (F1: help)", {view.width, view.height}, wants_debugging());
@@ -219,8 +224,8 @@ ExitCode run(const Options& options) {
     std::optional<Viewer> viewer;
     {
         const Progress progress("preparing", quiet);
-        renderer.emplace(input->scene, input->snapshot, options.view.tree, options.driver.shaders);
-        input.reset();  // the renderer has its own copy of what it needs
+        renderer.emplace(subject->make_renderer(options.view, options.driver.shaders));
+        subject.reset();  // the renderer has its own copy of what it needs
         viewer.emplace(*renderer, view, size);
         viewer->warm_up();
     }

@@ -167,18 +167,35 @@ void add_view_options(CLI::App& verb, ViewOptions& options) {
                 std::size_t(parse_int("--brick-pool", text, 1, max_brick_pool_mib)) << 20U;
             options.brick_pool = text;
         });
+    add_parsed_option(verb, "--brick-cache", "MIB",
+                      "main memory for bricks that had to leave the brick pool,\nin MiB (default: 0, none)",
+                      [&options](const std::string& text) {
+                          options.tree.brick_cache_bytes =
+                              std::size_t(parse_int("--brick-cache", text, 0, max_brick_pool_mib)) << 20U;
+                          options.brick_cache = text;
+                      });
     add_parsed_option(
         verb, "--pixel-error", "E",
         "the size of a voxel on the screen, in pixels, that rays\nlook for (default: 1)",
         [&options](const std::string& text) { options.view.pixel_error = pixel_error_of(text); });
     add_parsed_option(
         verb, "--level-of-detail", "nearest|blended",
-        "one size of voxels at a time, or two that lead over, so\nthat nothing pops when the camera moves "
-        "(default: nearest)",
+        "one size of voxels at a time, or two that lead over, so\nthat nothing pops when the camera moves; "
+        "of surfaces\n(default: nearest)",
         [&options](const std::string& text) {
             options.view.level_of_detail = level_of_detail_named(text);
             options.tree.mips = options.view.level_of_detail == renderer::LevelOfDetail::blended;
         });
+    add_parsed_option(
+        verb, "--transfer", "NAME|POINTS",
+        fmt::format(
+            "what the densities of a volume look like:\n{}; or points\nDENSITY:R,G,B:EXTINCTION with \";\" "
+            "between them, all in\n[0, 1] but the extinction, which is for each voxel\n(default: {})",
+            transfer_names(), default_transfer),
+        [&options](const std::string& text) { options.transfer = parse_transfer(text); });
+    add_parsed_option(
+        verb, "--copies", "K", "a volume K times along each axis, side by side (default: 1)",
+        [&options](const std::string& text) { options.copies = parse_int("--copies", text, 1, max_copies); });
     add_parsed_option(
         verb, "--show", "surface|levels|bricks",
         "the scene, or what its voxels are: their level in the\ntree, or the lines between bricks "
@@ -228,6 +245,9 @@ std::string render_command(const SceneOptions& scene, const ViewOptions& options
     if (options.tree.max_resolution != renderer::TreeOptions{}.max_resolution)
         add("--max-resolution", std::to_string(options.tree.max_resolution));
     if (options.brick_pool) add("--brick-pool", *options.brick_pool);
+    if (options.brick_cache) add("--brick-cache", *options.brick_cache);
+    if (options.transfer) add("--transfer", options.transfer->text);
+    if (options.copies != 1) add("--copies", std::to_string(options.copies));
     add("--output", output.string());
     return line;
 }

@@ -7,11 +7,14 @@
 #include <CLI/CLI.hpp>
 
 #include "app/options.h"
+#include "app/transfer_option.h"
 #include "renderer/renderer.h"
 #include "scenes/snapshot.h"
 
 /// What `cairn render` and `cairn view` have in common: from where to look, at what, through which tree.
 namespace cairn::app {
+
+constexpr int max_copies = 4096;
 
 struct ViewOptions {
     renderer::View view;  ///< camera and light only count when they were given
@@ -19,6 +22,10 @@ struct ViewOptions {
     bool camera_given = false;
     std::optional<std::string> light;       ///< as it was given
     std::optional<std::string> brick_pool;  ///< likewise
+    std::optional<std::string> brick_cache;
+    std::optional<TransferChoice> transfer;  ///< of a volume
+    int copies = 1;                          ///< of a volume, along each axis
+    int zoom = 0;                            ///< of builtin:fractal, a power of two
 };
 void add_view_options(CLI::App& verb, ViewOptions& options);
 

@@ -34,6 +34,7 @@ std::vector<Cell> measure(const std::string& path, int size, const ChartOptions&
     std::vector<double> embree_ms;
     std::vector<double> ratio;
     for (int i = 0; i < options.runs; ++i) {
+        ours.forget_picture();
         (void)ours.render(view);
         ours_ms.push_back(ours.statistics().milliseconds);
         embree_ms.push_back(embree.trace(camera, light, size, size).milliseconds);

@@ -29,6 +29,7 @@ set(package_of_meshoptimizer::meshoptimizer meshoptimizer)
 set(package_of_embree embree)
 set(package_of_TBB::tbb TBB)
 set(package_of_nlohmann_json::nlohmann_json nlohmann_json)
+set(package_of_ZLIB::ZLIB ZLIB)
 
 set(packages "")
 foreach(library IN LISTS cairn_libraries)

@@ -10,8 +10,9 @@ namespace cairn::gl {
 /// was set before when it goes out of scope: render passes deep in a library neither inherit state nor leave
 /// any behind.
 ///
-/// Covers tests, blending, logic operation, colour mask, culling, polygon mode, widths of lines and points,
-/// viewport, draw framebuffer, vertex array, and texture and sampler of unit 0.
+/// Covers tests, blending (of the first two draw buffers), logic operation, colour mask, culling, which side
+/// is the front, polygon mode, widths of lines and points, viewport, draw framebuffer, vertex array, and
+/// texture and sampler of unit 0.
 class DrawStateGuard {
 public:
     DrawStateGuard();
@@ -28,7 +29,13 @@ private:
         GL_SAMPLE_MASK, GL_SCISSOR_TEST,   GL_STENCIL_TEST,       GL_PRIMITIVE_RESTART};
 
     std::array<GLboolean, switches.size()> enabled_{};
+    struct Blending {
+        GLint equation_rgb, equation_alpha, source_rgb, source_alpha, destination_rgb, destination_alpha;
+    };
+
     GLint logic_op_ = 0;
+    GLint front_face_ = 0;
+    std::array<Blending, 2> blending_{};
     std::array<GLboolean, 4> color_mask_{};
     GLint polygon_mode_ = 0;
     GLfloat line_width_ = 1.0F;

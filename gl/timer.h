@@ -4,8 +4,9 @@
 
 namespace cairn::gl {
 
-/// Measures what the driver does between `start()` and `stop()` on its own clock (GL_TIME_ELAPSED).
-/// Timers of one context cannot overlap.
+/// Measures what the driver does between `start()` and `stop()` on its own clock: two GL_TIMESTAMPs, so that
+/// timers may overlap. (llvmpipe answers a GL_TIME_ELAPSED that begins before the context's first draw with
+/// the time since the machine started.)
 class Timer {
 public:
     Timer();
@@ -14,7 +15,8 @@ public:
     [[nodiscard]] double milliseconds() const;  ///< waits for the driver
 
 private:
-    QueryHandle query_;
+    QueryHandle begin_;
+    QueryHandle end_;
 };
 
 }  // namespace cairn::gl

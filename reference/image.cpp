@@ -222,6 +222,17 @@ ImageTracer::ImageTracer(const scenes::Scene& scene, const scenes::Snapshot& sna
     : parts_(std::make_unique<Parts>(scene, snapshot)) {}
 ImageTracer::~ImageTracer() = default;
 
+bool ImageTracer::blocked(const glm::dvec3& from, const glm::dvec3& to) const {
+    const glm::dvec3 way = to - from;
+    const double length = glm::length(way);
+    const double gap = 1e-5 * parts_->size;
+    if (!(length > 2.0 * gap)) return false;
+    RTCRay ray;
+    set_ray(ray, glm::vec3(from - parts_->centre), glm::vec3(way / length), float(gap), float(length - gap));
+    occluded(parts_->tree.get(), ray);
+    return ray.tfar < 0.0F;
+}
+
 double ImageTracer::build_milliseconds() const {
     return parts_->build_milliseconds;
 }

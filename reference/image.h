@@ -55,6 +55,10 @@ public:
     [[nodiscard]] ReferenceImage trace(const ReferenceCamera& camera, const ReferenceLight& light, int width,
                                        int height, int threads = 0) const;
 
+    /// Whether a surface stands between two points of the world. Either end's own surface does not count:
+    /// what is nearer to `from` or `to` than 1e-5 of the scene's diagonal is not seen.
+    [[nodiscard]] bool blocked(const glm::dvec3& from, const glm::dvec3& to) const;
+
     [[nodiscard]] double build_milliseconds() const;
 
 private:

@@ -29,4 +29,14 @@ Camera framing_camera(const scenes::Bounds& bounds, double aspect) {
     return camera;
 }
 
+Camera extrapolated(const Camera& before, const Camera& now) {
+    Camera next = now;
+    next.eye += now.eye - before.eye;
+    next.target += now.target - before.target;
+    const glm::dvec3 forward = next.target - next.eye;
+    // A camera that would look at where it stands, or along its up direction, is none.
+    const double least = 1e-6 * glm::length(forward) * glm::length(next.up);
+    return glm::length(glm::cross(forward, next.up)) > least ? next : now;
+}
+
 }  // namespace cairn::renderer

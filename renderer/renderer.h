@@ -10,8 +10,14 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "renderer/march/transfer_function.h"
+#include "renderer/march/traversal.h"
+#include "renderer/pool/tree_shape.h"
+#include "renderer/produce/content.h"
+#include "renderer/produce/volume_field.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
+#include "scenes/volume.h"
 
 namespace cairn::renderer {
 
@@ -26,6 +32,9 @@ struct Camera {
 
 /// Looks at the whole of the bounds from the front, above and to the right.
 [[nodiscard]] Camera framing_camera(const scenes::Bounds& bounds, double aspect);
+
+/// Where a camera that moved from `before` to `now` will be after as much time again, if it goes on alike.
+[[nodiscard]] Camera extrapolated(const Camera& before, const Camera& now);
 
 /// One light, white by default.
 struct Light {
@@ -69,7 +78,13 @@ struct View {
     /// Size of a voxel on the screen, in pixels, that level_of_detail follows.
     double pixel_error = 1.0;
     LevelOfDetail level_of_detail = LevelOfDetail::nearest;
+    /// Size of the voxels that a shadow ray meets, in those that its pixel shows: above 1 it reads, and asks
+    /// for, coarser data of its own. [1/64, 64]
+    double shadow_pixel_error = 1.0;
     Show show = Show::surface;
+    /// The camera and the light are told from this tile's low corner, in units of its side, instead of in the
+    /// world: so a view is exact however deep it is.
+    std::optional<Tile> anchor = std::nullopt;
     bool operator==(const View&) const = default;
 };
 
@@ -77,17 +92,33 @@ struct View {
 struct Rows {
     int first = 0;
     int count = 0;
+    bool operator==(const Rows&) const = default;
 };
 
 /// The shape of the N^3-tree and the bounds of its caches (Crassin et al. 2008, section 4).
 struct TreeOptions {
-    int n = 4;                  ///< children an axis: 2 or 4
-    int m = 16;                 ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64
+    int n = 4;   ///< children an axis: 2, 3, 4 or 8
+    int m = 16;  ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64; 27 or 81 with n = 3
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
-    bool mips = false;          ///< bricks hold mip levels, for LevelOfDetail::blended; a fifth more memory
+    bool mips = false;  ///< bricks hold mip levels, for LevelOfDetail::blended; a fifth more memory. Of
+                        ///< surfaces, not with n = 3
+    /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest
+    /// voxels are at least 2^-60 of the root cube.
+    std::optional<int> max_level = std::nullopt;
     std::size_t node_pool_bytes = 8U << 20U;
     std::size_t brick_pool_bytes = 256U << 20U;
+    Traversal traversal = Traversal::mini_stack;
+    /// Rays start where the tree says that there may be something, and none is made where there is nothing.
+    /// The picture is the same without it, only slower.
+    bool block_starts = true;
+    /// Main memory for bricks that had to leave the pool, so that they need not be produced again; 0: none.
+    std::size_t brick_cache_bytes = 0;
+    /// Tiles that one pass of rays can ask for, [1, 65536]; the rest is asked for again by the next pass.
+    int query_capacity = 65536;
 };
+
+/// @throws Error (Fault::usage) for a shape that cannot work.
+[[nodiscard]] TreeShape tree_shape_of(const TreeOptions& options);
 
 /// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended
 /// in).
@@ -100,26 +131,54 @@ struct Image {
 /// Counters of one `render()`.
 struct FrameStatistics {
     double milliseconds = 0.0;
-    int passes = 0;                  ///< ray-marching passes until nothing was missing
+    std::uint64_t rays_launched =
+        0;           ///< of the pixel blocks that may see anything; with a proxy, of the pixels it covers
+    int passes = 0;  ///< ray-marching passes; 0 where the picture was known without any
     std::uint64_t tile_queries = 0;  ///< misses that rays reported
     std::uint64_t nodes_subdivided = 0;
     std::uint64_t bricks_produced = 0;
+    std::uint64_t constant_tiles = 0;  ///< of those: turned out to hold one value, and keep no brick
     std::uint64_t bricks_evicted = 0;
     std::uint64_t nodes_evicted = 0;
-    double march_ms = 0.0;              ///< of `milliseconds`: rays
-    double produce_ms = 0.0;            ///< of `milliseconds`: subdividing, producing, uploading
-    bool converged = true;              ///< nothing was missing: the picture is that of render()
-    std::uint64_t bricks_resident = 0;  ///< after the frame
-    std::uint64_t brick_slots = 0;      ///< the most that can be resident
-    std::size_t node_pool_bytes = 0;    ///< what the two stores take, all of it, used or not
+    std::uint64_t bricks_relinked = 0;    ///< still in the pool when their node came back
+    std::uint64_t bricks_cached = 0;      ///< read back into main memory when they had to leave the pool
+    std::uint64_t bricks_restored = 0;    ///< taken from main memory instead of produced
+    std::uint64_t bricks_prefetched = 0;  ///< produced by prefetch() since the frame before
+    double march_ms = 0.0;                ///< of `milliseconds`: rays
+    double produce_ms = 0.0;              ///< of `milliseconds`: subdividing, producing, uploading
+    bool converged = true;                ///< nothing was missing: the picture is that of render()
+    std::uint64_t bricks_resident = 0;    ///< after the frame
+    std::uint64_t brick_slots = 0;        ///< the most that can be resident
+    std::size_t node_pool_bytes = 0;      ///< what the two stores take, all of it, used or not
     std::size_t brick_pool_bytes = 0;
+    std::size_t brick_cache_bytes = 0;  ///< what is kept in main memory now
 };
 
-/// Renders a scene through its voxel cache. Only what rays prove visible is voxelized, no finer than a pixel
-/// shows. Bricks stay in the pools from one frame to the next. Needs the context that was current at its
-/// construction.
+class MeshRaster;
+
+/// What is drawn as triangles beside the voxels (renderer/mesh/mesh_raster.h), in the same world.
+struct Mix {
+    /// Shown where it is nearer than the voxels, and through what they leave uncovered; lit like them. A
+    /// voxel counts as nearer when the middle of the ray's way through it is. Meshes cast no shadows.
+    std::shared_ptr<MeshRaster> meshes = nullptr;
+    bool mesh_shadows = false;  ///< voxels cast shadows on the meshes, when the view has shadows
+    /// The meshes are (also) the voxelized scene: then voxels that touch the triangle at a pixel are its own,
+    /// and cast no shadow on it. Else contact shadows begin at the triangle.
+    bool meshes_are_voxelized = false;
+    /// Rays run only from its first to its last face, or from the eye where more of its faces turn their back
+    /// to the eye than their front (which is so inside a closed mesh). Pixels that it does not cover launch
+    /// no ray. A voxel shows when the ray's way through it reaches into the proxy. Shadow rays do not know
+    /// it: what it hides still casts shadows (Crassin et al. 2008, section 5.4).
+    std::shared_ptr<MeshRaster> proxy = nullptr;
+};
+
+/// Renders a scene, or a volume, through its voxel cache. Only what rays prove visible is voxelized, no finer
+/// than a pixel shows. Bricks stay in the pools from one frame to the next. Needs the context that was
+/// current at its construction.
 ///
-/// The picture depends on the view alone: not on the pools' sizes, nor on what earlier frames left in them.
+/// The picture depends on the view (and the mix) alone: not on the pools' sizes, nor on what earlier frames
+/// left in them. So the finished rows of the last view are kept (up to 64 MiB) and given again, without
+/// marching, for as long as the view does not change.
 class Renderer {
 public:
     /// The scene and the snapshot are not needed afterwards.
@@ -127,11 +186,27 @@ public:
     /// not fit.
     Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options = {},
              const gl::ShaderSource& shaders = {});
+    /// A volume: its densities as the transfer function shows them, marched at the volume's own resolution,
+    /// or `options.max_resolution` if that is coarser. The volume is not needed afterwards.
+    /// @throws Error  as above; Fault::usage for VolumeOptions out of range.
+    Renderer(const scenes::Volume& volume, const TransferFunction& transfer, const TreeOptions& options = {},
+             const VolumeOptions& volume_options = {}, const gl::ShaderSource& shaders = {});
+    /// A field of densities, made for the tree's n.
+    Renderer(std::shared_ptr<const Field> field, const TransferFunction& transfer,
+             const TreeOptions& options = {}, const VolumeOptions& volume_options = {},
+             const gl::ShaderSource& shaders = {});
+
+    /// Content made for tree_shape_of(options), which must be the options here.
+    Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
+             const gl::ShaderSource& shaders = {});
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
     ~Renderer();
+
+    /// For all pictures from now on; an empty one for voxels alone.
+    void set_mix(const Mix& mix);
 
     /// @param progress  called after each pass with the share of pixels that are done, in [0, 1].
     [[nodiscard]] Image render(const View& view, const std::function<void(double)>& progress = {});
@@ -141,7 +216,8 @@ public:
     /// at all. Rays are never cut short: a frame takes at least as long as marching it once.
     ///
     /// Called again for the same view, it goes on where it stopped, until the picture is that of render():
-    /// statistics().converged. Pools too small for the view leave some of it at a lower level of detail.
+    /// statistics().converged. What it used for this view since the first of these calls it does not give up,
+    /// so pools too small for the view leave some of it at a lower level of detail and come to rest.
     [[nodiscard]] Image render_within(const View& view, double budget_ms);
 
     /// The same for some rows of the picture, which are those of the whole one, bit for bit: for a caller
@@ -150,7 +226,15 @@ public:
     [[nodiscard]] Image render_rows(const View& view, Rows rows);
     [[nodiscard]] Image render_rows_within(const View& view, Rows rows, double budget_ms);
 
-    /// Of the last `render()` or `render_within()`.
+    /// Produces bricks for a view that may be asked for next, where it finds room that the last frame does
+    /// not need, until `budget_ms` have passed. Changes no picture.
+    /// @return  bricks produced.
+    std::uint64_t prefetch(const View& next, double budget_ms);
+
+    /// The next frame is marched, whatever its view: for measurements.
+    void forget_picture();
+
+    /// Of the last `render()` or `render_within()`, whole or in rows.
     [[nodiscard]] const FrameStatistics& statistics() const;
 
 private:

@@ -1,5 +1,5 @@
 // What the mips of a brick hold: the same as a brick with voxels of their size, bit for bit.
-#include <map>
+#include <algorithm>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -56,18 +56,16 @@ ProducedMip read_mip(const BrickPool& pool, const TreeShape& shape, int slot, in
     GLint buffer = 0;
     glGetIntegerv(GL_TEXTURE_BINDING_BUFFER, &texture);
     glGetTextureLevelParameteriv(GLuint(texture), 0, GL_TEXTURE_BUFFER_DATA_STORE_BINDING, &buffer);
-    const auto words = std::size_t(BrickPool::mask_words(shape));
+    const std::size_t words = pool.mask_words();
     std::vector<std::uint64_t> masks(words);
     glGetNamedBufferSubData(GLuint(buffer), GLintptr(std::size_t(slot) * words * 8), GLsizeiptr(words * 8),
                             masks.data());
-    const int all = shape.mip_blocks_a_side(0);
-    std::size_t first = std::size_t((all * all * all + 63) / 64);
-    for (int finer = 0; finer < mip; ++finer) {
-        const auto blocks = std::size_t(shape.mip_blocks_a_side(finer));
-        first += blocks * blocks * blocks;
-    }
+    const int blocks_of_mip_0 = shape.blocks();
+    std::size_t first = std::size_t((blocks_of_mip_0 + 63) / 64);
+    for (int finer = 0; finer < mip; ++finer)
+        first += std::size_t(shape.blocks(finer));
     const int m = shape.m >> mip;
-    const int blocks = shape.mip_blocks_a_side(mip);
+    const int blocks = std::max(m / 4, 1);
     for (int i = 0; i < m * m * m; ++i) {
         const glm::ivec3 v(i % m, i / m % m, i / (m * m));
         const glm::ivec3 block = v / 4;
@@ -189,7 +187,8 @@ TEST_P(BrickMips, VoxelIsOccupiedWhereAFinerOneInItIs) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, BrickMips,
                          ::testing::Values(Shape{4, 16, true}, Shape{4, 8, false}, Shape{2, 8, true},
-                                           Shape{2, 16, false}, Shape{4, 32, true}),
+                                           Shape{2, 16, false}, Shape{4, 32, true}, Shape{8, 8, false},
+                                           Shape{8, 16, true}),
                          [](const auto& shape) {
                              return fmt::format("N{}M{}{}", shape.param.n, shape.param.m,
                                                 shape.param.has_color ? "Colour" : "");

@@ -23,8 +23,13 @@ GLuint mask_buffer(const BrickPool& pool) {
     return GLuint(id);
 }
 
+int block_side(int m) {
+    return m % 3 == 0 ? 3 : 4;
+}
+
 int mask_words(int m) {
-    const int blocks = m / 4 * (m / 4) * (m / 4);
+    const int across = m / block_side(m);
+    const int blocks = across * across * across;
     return blocks + (blocks + 63) / 64;
 }
 
@@ -74,17 +79,19 @@ glm::vec3 ProducedBrick::normal_at(const glm::ivec3& place) const {
 }
 
 bool ProducedBrick::occupied(const glm::ivec3& place) const {
-    const glm::ivec3 block = place / 4;
-    const glm::ivec3 voxel = place % 4;
-    const int blocks = m / 4;
+    const int side = block_side(m);
+    const glm::ivec3 block = place / side;
+    const glm::ivec3 voxel = place % side;
+    const int blocks = m / side;
     const std::size_t summaries = std::size_t((blocks * blocks * blocks + 63) / 64);
     const std::uint64_t word =
         masks[summaries + std::size_t(block.x + blocks * (block.y + blocks * block.z))];
-    return (word >> unsigned(voxel.x + 4 * (voxel.y + 4 * voxel.z)) & 1U) != 0;
+    return (word >> unsigned(voxel.x + side * (voxel.y + side * voxel.z)) & 1U) != 0;
 }
 
 bool ProducedBrick::summary_at(const glm::ivec3& block) const {
-    const auto bit = unsigned(block.x + m / 4 * (block.y + m / 4 * block.z));
+    const int across = m / block_side(m);
+    const auto bit = unsigned(block.x + across * (block.y + across * block.z));
     return (masks[bit / 64] >> (bit % 64) & 1U) != 0;
 }
 

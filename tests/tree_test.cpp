@@ -21,8 +21,8 @@ TEST(TreeShapeTest, IsTheDeepestWhoseVoxelsDoNotPassTheLimit) {
     EXPECT_EQ(make_tree_shape(4, 16, 8192).resolution(), 4096);
     EXPECT_EQ(make_tree_shape(2, 8, 8).max_level, 0);
     EXPECT_EQ(make_tree_shape(2, 8, 1 << MAX_RESOLUTION_BITS).max_level, 18);
-    for (const int n : {2, 4}) {
-        for (const int m : {8, 16, 32, 64}) {
+    for (const int n : {2, 3, 4, 8}) {
+        for (const int m : n == 3 ? std::vector{27, 81} : std::vector{8, 16, 32, 64}) {
             for (int limit = m; limit <= 1 << MAX_RESOLUTION_BITS; limit += 1 + limit / 7) {
                 const TreeShape shape = make_tree_shape(n, m, limit);
                 const auto where = fmt::format("N = {}, M = {}, limit {}", n, m, limit);
@@ -43,10 +43,11 @@ TEST(TreeShapeTest, RefusesWhatCannotWorkAndSaysWhatCan) {
         const char* hint;
     };
     for (const Wrong& wrong :
-         {Wrong{3, 16, 8192, "2 or 4"}, Wrong{0, 16, 8192, "2 or 4"}, Wrong{8, 16, 8192, "2 or 4"},
-          Wrong{4, 12, 8192, "8, 16, 32 or 64"}, Wrong{4, 4, 8192, "8, 16, 32 or 64"},
-          Wrong{4, 128, 8192, "8, 16, 32 or 64"}, Wrong{4, 16, 15, "between 16"}, Wrong{2, 8, 0, "between 8"},
-          Wrong{2, 8, -1, "between 8"}, Wrong{4, 16, (1 << MAX_RESOLUTION_BITS) + 1, "2097152"}}) {
+         {Wrong{3, 16, 8192, "27 or 81"}, Wrong{0, 16, 8192, "2, 3, 4 or 8"},
+          Wrong{8, 27, 8192, "8, 16, 32 or 64"}, Wrong{4, 12, 8192, "8, 16, 32 or 64"},
+          Wrong{4, 4, 8192, "8, 16, 32 or 64"}, Wrong{4, 128, 8192, "8, 16, 32 or 64"},
+          Wrong{4, 16, 15, "between 16"}, Wrong{2, 8, 0, "between 8"}, Wrong{2, 8, -1, "between 8"},
+          Wrong{4, 16, (1 << MAX_RESOLUTION_BITS) + 1, "2097152"}}) {
         try {
             (void)make_tree_shape(wrong.n, wrong.m, wrong.limit);
             ADD_FAILURE() << fmt::format("N = {}, M = {}, limit {} was accepted", wrong.n, wrong.m,
@@ -70,7 +71,7 @@ TEST(TreeShapeTest, EveryTileHasItsOwnHashAndItsParent) {
                     const Tile tile{level, {x, y, z}};
                     hashes.insert(TileHash{}(tile));
                     ++tiles;
-                    for (const int n : {2, 4}) {
+                    for (const int n : {2, 3, 4, 8}) {
                         for (int child = 0; child < n * n * n; ++child)
                             ASSERT_EQ(parent_of(child_of(tile, n, child), n), tile) << "N = " << n;
                     }
@@ -217,9 +218,10 @@ TEST_F(TreeTest, UsedBrickRenewsThePathToTheRoot) {
     EXPECT_EQ(tree().node(top + 1).children, 0U);
     EXPECT_EQ(tree().node(top).children, used) << "the used path was cut";
     EXPECT_NE(tree().node(used).children, 0U) << "the used path was cut";
-    EXPECT_EQ(tree().bricks_resident(), 1);
+    EXPECT_EQ(reached().bricks, 1);
     EXPECT_EQ(tree().counters().nodes_evicted, 2U);
-    EXPECT_EQ(tree().counters().bricks_evicted, 1U);
+    EXPECT_EQ(tree().counters().bricks_evicted, 0U) << "its brick stays in its slot";
+    EXPECT_EQ(tree().orphans().size(), 1U);
 }
 
 TEST_F(TreeTest, ParentOutlivesItsChildren) {
@@ -240,7 +242,7 @@ TEST_F(TreeTest, ParentOutlivesItsChildren) {
     EXPECT_EQ(reached().blocks, 5);
 }
 
-TEST_F(TreeTest, EvictedBlockGivesItsBricksBack) {
+TEST_F(TreeTest, EvictedBlockLeavesItsBricksInTheirSlots) {
     make(5, 8);
     const std::uint32_t top = children(0);
     const std::uint32_t old = children(top);
@@ -253,14 +255,57 @@ TEST_F(TreeTest, EvictedBlockGivesItsBricksBack) {
     next_round();
     EXPECT_EQ(children(top + 4), old) << "the oldest block was another";
     EXPECT_EQ(tree().node(top).children, 0U);
-    EXPECT_EQ(tree().bricks_resident(), 0);
-    EXPECT_EQ(tree().counters().bricks_evicted, 8U);
+    EXPECT_EQ(tree().bricks_resident(), 8);
+    EXPECT_EQ(tree().orphans().size(), 8U);
+    EXPECT_EQ(tree().counters().bricks_evicted, 0U);
     EXPECT_EQ(tree().counters().nodes_evicted, 1U);
     for (std::uint32_t child = 0; child < 8; ++child)
         EXPECT_EQ(tree().node(old + child).brick, 0U) << "child " << child << " of the new block";
     EXPECT_EQ(reached().bricks, 0);
     tree().upload();
     EXPECT_TRUE(gpu_equals_mirror(tree()));
+}
+
+TEST_F(TreeTest, BrickIsLinkedAgainWhenItsTileComesBack) {
+    make(5, 2);
+    const std::uint32_t top = children(0);
+    const std::uint32_t old = children(top);
+    const int slot = brick(old + 3);
+    const int other = brick(old + 5);
+    next_round({slot});
+    next_round({slot});
+    (void)children(top + 1);
+    (void)children(top + 2);
+    next_round();
+    (void)children(top + 4);
+    ASSERT_EQ(tree().orphans().size(), 2U);
+    // The older of the two gives way; the other is there when its tile is asked for again.
+    EXPECT_EQ(brick(top), other);
+    EXPECT_EQ(tree().counters().bricks_evicted, 1U);
+    next_round();
+    const std::uint32_t again = children(top);
+    EXPECT_EQ(tree().node(again + 3).brick, std::uint32_t(slot) + 1);
+    EXPECT_EQ(tree().node(again + 5).brick, 0U);
+    EXPECT_EQ(tree().counters().bricks_relinked, 1U);
+    EXPECT_TRUE(tree().orphans().empty());
+    tree().upload();
+    EXPECT_TRUE(gpu_equals_mirror(tree()));
+}
+
+TEST_F(TreeTest, BricksThatMayNotStayNeverTakeTurns) {
+    make(16, 2);
+    const std::uint32_t top = children(0);
+    (void)brick(top);
+    (void)brick(top + 1);
+    next_round();
+    next_round();
+    tree().keep_since(3);
+    EXPECT_TRUE(tree().add_brick(top + 2, false).has_value()) << "an older brick was there";
+    next_round();
+    EXPECT_TRUE(tree().add_brick(top + 3, false).has_value()) << "an older brick was there";
+    next_round();
+    EXPECT_FALSE(tree().add_brick(top + 4, false).has_value()) << "it took the place of its like";
+    EXPECT_TRUE(tree().add_brick(top + 4, true).has_value());
 }
 
 TEST_F(TreeTest, EntriesOfABlockTakenAwayWantNothingInThatRound) {

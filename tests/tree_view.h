@@ -63,8 +63,8 @@ inline Reached walk(const renderer::Tree& tree, int slot_count) {
     for (std::size_t i = 0; i < reached.entries.size(); ++i) {
         const std::uint32_t entry = reached.entries[i];
         const interop::NodeEntry& node = tree.node(entry);
-        if (node.brick != 0) {
-            const std::size_t slot = node.brick - 1;
+        if (tree.slot(entry)) {
+            const auto slot = std::size_t(*tree.slot(entry));
             if (slot >= slot_seen.size() || slot_seen[slot]) {
                 ADD_FAILURE() << "slot " << slot << " of entry " << entry << " has another owner";
                 return reached;

@@ -162,6 +162,7 @@ TEST_F(ViewerTest, RowsAreThoseOfTheWholePicture) {
     std::vector<std::uint8_t> rows;
     for (int row = 0; row < view_.height; row += 37) {
         const renderer::Rows some{row, std::min(37, view_.height - row)};
+        renderer.forget_picture();
         const renderer::Image image =
             row % 2 == 0 ? renderer.render_rows(view_, some) : renderer.render_rows_within(view_, some, 1e9);
         rows.insert(rows.end(), image.rgba.begin(), image.rgba.end());
@@ -213,6 +214,7 @@ TEST_F(ViewerTest, EveryInputIsShownAndComesToRestAgain) {
         rest(viewer, now);
         EXPECT_EQ(viewer.frame_ms().size(), frames + 1) << what;
         EXPECT_TRUE(viewer.converged()) << what;
+        renderer.forget_picture();
         EXPECT_EQ(viewer.growing().image().rgba, renderer.render(viewer.view()).rgba) << what;
     };
     viewer.drag_left({0.1, 0.05});

@@ -5,8 +5,8 @@
 namespace cairn::app {
 namespace {
 
-/// A band that lacks something is given up after so many visits that evicted bricks and changed no pixel, or
-/// after so many in all: the pools are too small for it.
+/// A band that lacks something is given up after so many visits that could add nothing and changed no pixel,
+/// or after so many in all: the pools are too small for it.
 constexpr int most_idle_visits = 3;
 constexpr int most_visits = 500;
 /// The marcher's blocks of pixels are as high.
@@ -42,9 +42,10 @@ double Refinement::share_done() const {
     return double(rows) / view_.height;
 }
 
-/// The next rows of the first sweep, then the first band that lacks something, until nothing more can be done
-/// for it: where the pools hold one band but not all, turns would make the bands evict each other's bricks. A
-/// band is cut where it would take long.
+/// The next rows of the first sweep, then the last band that lacks something, until nothing more can be done
+/// for it: where the pools hold one band but not all, turns would make the bands evict each other's bricks.
+/// From the last to the first, because the pools hold what the sweep used last. A band is cut where it would
+/// take long.
 Band& Refinement::choose(const Pace& pace) {
     const int rows = rows_at(pace, view_.width);
     if (!complete()) {
@@ -53,15 +54,13 @@ Band& Refinement::choose(const Pace& pace) {
         next_row_ += count;
         return bands_.back();
     }
-    while (bands_[next_band_].converged || bands_[next_band_].stuck)
-        ++next_band_;
-    Band& band = bands_[next_band_];
-    if (band.rows.count >= 2 * rows) {
-        const Band rest{{band.rows.first + rows, band.rows.count - rows}};
-        band.rows.count = rows;
-        bands_.insert(bands_.begin() + std::ptrdiff_t(next_band_) + 1, rest);
-    }
-    return bands_[next_band_];
+    const auto last = std::find_if(bands_.rbegin(), bands_.rend(),
+                                   [](const Band& band) { return !band.converged && !band.stuck; });
+    if (last->rows.count < 2 * rows) return *last;
+    const int kept = last->rows.count - rows;
+    const Band cut{{last->rows.first + kept, rows}};
+    last->rows.count = kept;
+    return *bands_.insert(last.base(), cut);
 }
 
 void Refinement::step(renderer::Renderer& renderer, Pace& pace) {
@@ -77,10 +76,10 @@ void Refinement::step(renderer::Renderer& renderer, Pace& pace) {
 void Refinement::note_visit(Band& band, const renderer::Image& rows,
                             const renderer::FrameStatistics& statistics) const {
     const auto before = image_.rgba.begin() + std::ptrdiff_t(band.rows.first) * view_.width * 4;
-    const bool full = statistics.bricks_evicted > 0 || statistics.nodes_evicted > 0;
-    const bool answered = statistics.bricks_produced > 0 || statistics.nodes_subdivided > 0;
+    const bool answered =
+        statistics.bricks_produced > 0 || statistics.bricks_restored > 0 || statistics.nodes_subdivided > 0;
     const bool same = std::equal(rows.rgba.begin(), rows.rgba.end(), before);
-    band.idle_visits = same && (full || !answered) ? band.idle_visits + 1 : 0;
+    band.idle_visits = same && !answered ? band.idle_visits + 1 : 0;
     ++band.visits;
     band.stuck = !band.converged && (band.idle_visits >= most_idle_visits || band.visits >= most_visits);
 }

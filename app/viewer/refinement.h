@@ -52,8 +52,7 @@ private:
     renderer::View view_;
     renderer::Image image_;
     std::vector<Band> bands_;
-    int next_row_ = 0;           // of the first sweep
-    std::size_t next_band_ = 0;  // where it is refined
+    int next_row_ = 0;  // of the first sweep
 };
 
 }  // namespace cairn::app

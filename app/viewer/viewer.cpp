@@ -16,6 +16,7 @@ namespace {
 /// bricks are produced.
 constexpr double frame_aim_ms = 50.0;
 constexpr double slice_aim_ms = 30.0;
+constexpr double least_prefetch_ms = 5.0;
 constexpr double first_pixels = 60000.0;
 /// The view stands still when it has not changed for so long: between two events of a slow drag it does not.
 constexpr double settle_seconds = 0.15;
@@ -143,6 +144,7 @@ void Viewer::step(double now) {
         changed_at_ = now;
         render_moving_frame();
     } else if (rest(now) <= 0.0) {
+        moved_from_.reset();
         if (picture_) {
             continue_picture();
         } else {
@@ -167,6 +169,17 @@ void Viewer::render_moving_frame() {
     ++base_revision_;
     growing_ = Refinement();
     ++growing_revision_;
+    prefetch_for(small);
+}
+
+/// Time that a moving frame has left goes to the bricks of the next one.
+void Viewer::prefetch_for(renderer::View next) {
+    const double left_ms = frame_aim_ms - renderer_.statistics().milliseconds;
+    const renderer::Camera from = moved_from_.value_or(next.camera);
+    moved_from_ = next.camera;
+    if (!renderer_.statistics().converged || left_ms < least_prefetch_ms || from == next.camera) return;
+    next.camera = renderer::extrapolated(from, next.camera);
+    bricks_produced_ += renderer_.prefetch(next, left_ms);
 }
 
 /// The next slice of the picture that grows; a coarse one that is whole makes room for a finer one.

@@ -82,6 +82,7 @@ public:
 private:
     [[nodiscard]] const renderer::Camera& camera() const;
     void render_moving_frame();
+    void prefetch_for(renderer::View next);
     void grow();
     void continue_picture();
     void note(std::vector<double>& times);
@@ -100,6 +101,7 @@ private:
 
     Pace frame_pace_;
     Pace slice_pace_;
+    std::optional<renderer::Camera> moved_from_;  // the camera of the moving frame before
     renderer::Image base_;
     Refinement growing_;
     std::optional<Refinement> picture_;

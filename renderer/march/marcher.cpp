@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "gl/limits.h"
+#include "renderer/march/block_starts.h"
+#include "renderer/march/shadow_ends.h"
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
 
@@ -14,17 +17,56 @@ namespace {
 constexpr unsigned group_size = 64;
 /// Passes in a row in which rays only pause: a ray crosses fewer than 8 cells for each voxel across the root
 /// cube.
+/// With windows, that many in each.
 constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
+constexpr int most_pauses_in_windows = ((16 << WINDOW_TILE_BITS) / TURN_BUDGET + 1) * MAX_WINDOWS;
+constexpr std::size_t window_header_bytes = sizeof(glm::ivec4);
 constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
 constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t);
 
+static_assert(int(Traversal::restart) == TRAVERSAL_RESTART &&
+              int(Traversal::stackless) == TRAVERSAL_STACKLESS &&
+              int(Traversal::mini_stack) == TRAVERSAL_MINI_STACK);
+
+gl::Defines defines_of(const TreeShape& shape, bool has_color, const MarchOptions& options) {
+    gl::Defines defines = shape.defines(has_color);
+    defines.emplace_back("TRAVERSAL", std::to_string(int(options.traversal)));
+    return defines;
+}
+
+/// Rays in windows begin their descents at the window's tiles, and the eye is never far from those.
+MarchOptions options_for(const TreeShape& shape, const MarchOptions& options) {
+    MarchOptions fitting = options;
+    if (shape.has_windows()) {
+        fitting.traversal = Traversal::restart;
+        fitting.block_starts = false;
+    }
+    return fitting;
+}
+
 }  // namespace
 
-Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders)
-    : shaders_(shaders),
-      defines_(shape.defines(has_color)),
+Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
+                 const gl::ShaderSource& shaders, MarchKind kind)
+    : options_(options_for(shape, options)),
+      shaders_(shaders),
+      kind_(std::move(kind)),
+      defines_(defines_of(shape, has_color, options_)),
       view_(sizeof(interop::MarchView), "view"),
-      queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer") {
+      shadow_ends_(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE * sizeof(float), "ends of shadow rays"),
+      queries_(query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t), "tile query buffer"),
+      query_capacity_(std::uint32_t(options.query_capacity)) {
+    if (options.query_capacity < 1 || options.query_capacity > QUERY_CAPACITY) {
+        throw Error(Fault::usage, "tile queries", std::to_string(options.query_capacity) + " are no capacity",
+                    "choose between 1 and " + std::to_string(QUERY_CAPACITY));
+    }
+    defines_.insert(defines_.end(), kind_.defines.begin(), kind_.defines.end());
+    if (shape.has_windows())
+        windows_ = gl::Buffer(window_header_bytes + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows");
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    shadow_ends_texture_ = gl::TextureHandle(id);
+    glTextureBuffer(id, GL_R32F, shadow_ends_.id());
     (void)primary_program(PassKind::patient);
     (void)shadow_program(PassKind::patient);
 }
@@ -32,27 +74,34 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource&
 const gl::Program& Marcher::primary_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
     const int show_tree = show_tree_ ? 1 : 0;
+    const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
+    const int proxy = mix_.proxy_span != 0 ? 1 : 0;
     const int blended = blended_ ? 1 : 0;
-    gl::Program& program = primary_[std::size_t(progressive + 2 * show_tree + 4 * blended)];
+    gl::Program& program =
+        primary_[std::size_t(progressive + 2 * show_tree + 4 * meshes + 8 * proxy + 16 * blended)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
         defines.emplace_back("BLENDED", std::to_string(blended));
         defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
-        program = gl::build_compute(shaders_, "march/primary.comp.glsl", defines);
+        if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
+        if (proxy != 0) defines.emplace_back("WITH_PROXY", "");
+        program = gl::build_compute(shaders_, kind_.primary, defines);
     }
     return program;
 }
 
 const gl::Program& Marcher::shadow_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
+    const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
     const int blended = blended_ ? 1 : 0;
-    gl::Program& program = shadow_[std::size_t(progressive + 2 * blended)];
+    gl::Program& program = shadow_[std::size_t(progressive + 2 * meshes + 4 * blended)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("BLENDED", std::to_string(blended));
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
-        program = gl::build_compute(shaders_, "march/shadow.comp.glsl", defines);
+        if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
+        program = gl::build_compute(shaders_, kind_.shadow, defines);
     }
     return program;
 }
@@ -64,7 +113,10 @@ int Marcher::band_rows(int width, int height) {
     return int(std::min<std::size_t>(std::max<std::size_t>(rows / 8 * 8, 8), std::size_t(height)));
 }
 
-void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool) {
+void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool,
+                          bool is_blended, const MarchMix& mix) {
+    mix_ = mix;
+    blended_ = is_blended;
     size_ = glm::ivec2(view.size_shadow.x, view.band.y);
     const auto pixels = std::size_t(size_.x) * std::size_t(size_.y);
     if (pixels > capacity_) {
@@ -80,13 +132,54 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         usage_ = gl::Buffer(usage_words * sizeof(std::uint32_t), "brick usage");
         usage_.fill(0);
     }
-    view_.write(0, &view, sizeof(view));
+    interop::MarchView marched = view;
+    if (options_.block_starts && view.size_shadow.z != 0 && view.light.w == 0.0F) {
+        const ShadowEnds ends = shadow_ends(view, tree, is_blended);
+        shadow_ends_.write(0, ends.ends.data(), ends.ends.size() * sizeof(float));
+        marched.shadow_across = ends.across;
+        marched.shadow_down = ends.down;
+        marched.size_shadow.w = 1;
+    }
+    view_.write(0, &marched, sizeof(marched));
+    std::vector<interop::BlockStart> starts =
+        options_.block_starts ? block_starts(view, tree, is_blended) : all_block_starts(view);
+    if (mix.mesh_nearest != 0) add_empty_blocks(view, starts);
+    start_count_ = starts.size();
+    if (starts_.size_bytes() < starts.size() * sizeof(starts[0]))
+        starts_ = gl::Buffer(capacity_ * sizeof(starts[0]), "block starts");
+    starts_.write(0, starts.data(), starts.size() * sizeof(starts[0]));
+    image_.fill(0, pixels * sizeof(std::uint32_t), std::uint32_t(view.band.w));
     first_pass_ = true;
-    blended_ = view.band.w != 0;
     show_tree_ = view.band.z != SHOW_SURFACE;
     pauses_ = 0;
     waiting_primary_ = 0;
     waiting_shadow_ = 0;
+}
+
+void Marcher::set_windows(const std::vector<interop::MarchWindow>& windows) {
+    const glm::ivec4 count(int(windows.size()), 0, 0, 0);
+    windows_.write(0, &count, sizeof(count));
+    windows_.write(window_header_bytes, windows.data(), windows.size() * sizeof(interop::MarchWindow));
+}
+
+void Marcher::bind_mix() const {
+    if (mix_.mesh_nearest != 0) {
+        glBindTextureUnit(TEXTURE_MESH_NEAREST, mix_.mesh_nearest);
+        glBindTextureUnit(TEXTURE_MESH_SURFACE, mix_.mesh_surface);
+    }
+    if (mix_.proxy_span != 0) {
+        glBindTextureUnit(TEXTURE_PROXY_SPAN, mix_.proxy_span);
+        glBindTextureUnit(TEXTURE_PROXY_FACES, mix_.proxy_faces);
+    }
+}
+
+void Marcher::set_mix(const gl::Program& program) const {
+    if (mix_.mesh_nearest != 0) {
+        program.set("mesh_first_row", mix_.mesh_first_row);
+        program.set("mesh_shadows", int(mix_.mesh_shadows));
+        program.set("mesh_own_height", mix_.mesh_own_height);
+    }
+    if (mix_.proxy_span != 0) program.set("proxy_first_row", mix_.proxy_first_row);
 }
 
 PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool, PassKind kind) {
@@ -98,20 +191,26 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     if (kind != PassKind::patient)
         queries_.fill(query_counts_offset, QUERY_COUNTS * sizeof(std::uint32_t), 0);
     view_.bind_uniform(UBO_VIEW);
+    if (windows_.id() != 0) windows_.bind_uniform(UBO_WINDOWS);
     rays_.bind_storage(SSBO_RAYS);
     lists_.bind_storage(SSBO_LISTS);
     queries_.bind_storage(SSBO_QUERIES);
     usage_.bind_storage(SSBO_USAGE);
     image_.bind_storage(SSBO_IMAGE);
+    starts_.bind_storage(SSBO_BLOCK_STARTS);
+    glBindTextureUnit(TEXTURE_SHADOW_ENDS, shadow_ends_texture_.id());
     tree.bind_for_reading();
     pool.bind_for_reading();
+    bind_mix();
+    if (kind_.bind) kind_.bind();
 
     const std::uint32_t old_shadow = waiting_shadow_;
-    const glm::ivec2 blocks = (size_ + 7) / 8;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
     if (old_shadow != 0) run({shadow_program(kind), true, old_shadow}, round, pool, kind);
-    const std::uint32_t primary = first_pass_ ? std::uint32_t(blocks.x * blocks.y) * 64U : waiting_primary_;
+    const std::uint32_t primary =
+        first_pass_ ? std::uint32_t(start_count_ * PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) : waiting_primary_;
     if (primary != 0) run({primary_program(kind), false, primary}, round, pool, kind);
+    const bool began = first_pass_;
     first_pass_ = false;
     list_side_ ^= 1;
 
@@ -119,16 +218,17 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     const bool waiting = counters.waiting_primary != 0 || counters.waiting_shadow != 0;
     const bool stalled = waiting && counters.queries == 0 && counters.paused == 0 && primary == 0;
     pauses_ = counters.paused != 0 && counters.queries == 0 ? pauses_ + 1 : 0;
-    if (stalled || pauses_ > most_pauses) {
+    if (stalled || pauses_ > (windows_.id() != 0 ? most_pauses_in_windows : most_pauses)) {
         throw Error(Fault::internal, "ray-marcher", "a ray did not come to an end",
                     "this is a fault of Cairn: please report the scene and the view");
     }
     PassResult result;
     result.stood_in = counters.stood_in;
+    result.launched = mix_.proxy_span != 0 ? counters.launched : began ? primary : 0;
     result.waiting_primary = waiting_primary_ = counters.waiting_primary;
     result.waiting_shadow = waiting_shadow_ = counters.waiting_shadow;
-    result.queries = queries_.read_all<std::uint32_t>(std::min<std::size_t>(counters.queries, QUERY_CAPACITY),
-                                                      query_header_bytes);
+    result.queries =
+        queries_.read_all<std::uint32_t>(std::min(counters.queries, query_capacity_), query_header_bytes);
     if (kind != PassKind::patient)
         result.query_counts = queries_.read_all<std::uint32_t>(QUERY_COUNTS, query_counts_offset);
     result.brick_stamps = usage_.read_all<std::uint32_t>(std::size_t(pool.slot_count()));
@@ -150,8 +250,10 @@ void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool
     }
     program.set("shadow_list", list(1, list_side_ ^ 1));
     program.set("pass_number", round);
+    program.set("query_capacity", query_capacity_);
     program.set("usage_query_offset", query_bits_offset_);
     program.set("pool_levels", pool.levels());
+    set_mix(program);
     program.use();
     gl::dispatch_threads(dispatch.rays, group_size);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

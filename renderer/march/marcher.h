@@ -3,14 +3,18 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "gl/buffer.h"
 #include "gl/program.h"
+#include "renderer/march/traversal.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
+#include "shaders/interop/config.h"
 #include "shaders/interop/types.h"
 
 namespace cairn::renderer {
@@ -22,11 +26,18 @@ enum class PassKind : std::uint8_t {
     stand_in,     ///< no ray waits: the nearest ancestor's brick is shown
 };
 
+struct MarchOptions {
+    Traversal traversal = Traversal::mini_stack;
+    bool block_starts = true;             ///< rays start at block_starts(), where there are any
+    int query_capacity = QUERY_CAPACITY;  ///< tiles that a pass can ask for, [1, QUERY_CAPACITY]
+};
+
 /// What one pass of rays came back with.
 struct PassResult {
     std::uint32_t waiting_primary = 0;  ///< rays that missed a tile or paused
     std::uint32_t waiting_shadow = 0;   ///< the same, and shadow rays not yet started
     std::uint32_t stood_in = 0;         ///< missing tiles that rays did not wait for
+    std::uint32_t launched = 0;  ///< rays that began; all of the band's in its first pass, but for a proxy
     /// 2 * node entry + QUERY_*, or 2 * Tree::entry_count() + entry for a brick that could stand in; each
     /// once.
     std::vector<std::uint32_t> queries;
@@ -36,18 +47,47 @@ struct PassResult {
     [[nodiscard]] bool done() const { return waiting_primary == 0 && waiting_shadow == 0; }
 };
 
+/// What the rays of a band meet beside voxels: textures of rows that hold the band's
+/// (renderer/mesh/mesh_raster.h).
+struct MarchMix {
+    GLuint mesh_nearest = 0;  ///< 0: no meshes
+    GLuint mesh_surface = 0;
+    int mesh_first_row = 0;     ///< of the picture, in those
+    bool mesh_shadows = false;  ///< voxels cast shadows on meshes
+    float mesh_own_height =
+        0.0F;               ///< voxels whose centres are no further over a mesh are its own; in their sides
+    GLuint proxy_span = 0;  ///< 0: no proxy
+    GLuint proxy_faces = 0;
+    int proxy_first_row = 0;
+};
+
+/// How rays see a kind of content: the entry points, and what they need beside the pools.
+struct MarchKind {
+    std::string primary = "march/primary.comp.glsl";
+    std::string shadow = "march/shadow.comp.glsl";
+    gl::Defines defines;
+    std::function<void()> bind;  ///< before each pass; may be empty
+};
+
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
 /// query buffer (Crassin et al. 2008, sections 5.1 to 5.3).
 class Marcher {
 public:
-    Marcher(const TreeShape& shape, bool has_color, const gl::ShaderSource& shaders);
+    /// @throws Error (Fault::usage) for a query capacity that is none.
+    Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
+            const gl::ShaderSource& shaders, MarchKind kind = {});
 
     /// Rows of a picture that are marched at once: as many as the driver's largest buffer holds ray states
     /// for.
     [[nodiscard]] static int band_rows(int width, int height);
 
     /// Sets the frame, or a band of it (`view.band`); buffers grow when the bands do.
-    void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool);
+    /// @param is_blended  rays see two mips at once (LevelOfDetail::blended); the pool's bricks have mips.
+    void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool, bool is_blended,
+                     const MarchMix& mix = {});
+
+    /// For trees with windows: before each pass, since tiles come and go.
+    void set_windows(const std::vector<interop::MarchWindow>& windows);
 
     /// Runs every waiting ray until it ends, misses a tile, or has crossed so many cells that it pauses.
     /// `round` is a number that grows with each pass.
@@ -73,20 +113,33 @@ private:
     void run(const Dispatch& dispatch, std::uint32_t round, const BrickPool& pool, PassKind kind) const;
     [[nodiscard]] interop::MarchCounters read_counters() const;
 
+    MarchOptions options_;
     gl::ShaderSource shaders_;
+    MarchKind kind_;
     gl::Defines defines_;
-    std::array<gl::Program, 8> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * BLENDED
-    std::array<gl::Program, 4> shadow_;   ///< PROGRESSIVE + 2 * BLENDED
+    void bind_mix() const;
+    void set_mix(const gl::Program& program) const;
+
+    std::array<gl::Program, 32>
+        primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * meshes + 8 * proxy + 16 * BLENDED
+    std::array<gl::Program, 8> shadow_;  ///< PROGRESSIVE + 2 * meshes + 4 * BLENDED
     gl::Buffer view_;
+    gl::Buffer windows_;  ///< empty where the tree has none
+    gl::Buffer shadow_ends_;
+    gl::TextureHandle shadow_ends_texture_;
     gl::Buffer rays_;
     gl::Buffer lists_;
     gl::Buffer queries_;
     gl::Buffer usage_;
     gl::Buffer image_;
+    gl::Buffer starts_;
+    std::size_t start_count_ = 0;
+    MarchMix mix_;
     glm::ivec2 size_{0};
     std::size_t capacity_ = 0;  // pixels that the buffers hold
     std::uint32_t query_bits_offset_ = 0;
     std::uint32_t entry_count_ = 0;
+    std::uint32_t query_capacity_ = 0;
     std::uint32_t waiting_primary_ = 0;
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;

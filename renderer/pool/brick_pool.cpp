@@ -67,19 +67,10 @@ Layout lay_out(const TreeShape& shape, const glm::ivec3& slots) {
 
 }  // namespace
 
-int BrickPool::mask_words(const TreeShape& shape) {
-    int words = 0;
-    for (int mip = 0; mip <= shape.mips; ++mip) {
-        const int blocks = shape.mip_blocks_a_side(mip);
-        words += blocks * blocks * blocks;
-    }
-    const int blocks = shape.mip_blocks_a_side(0);
-    return words + (blocks * blocks * blocks + 63) / 64;
-}
-
-BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes) : has_color_(has_color) {
-    const auto mask_bytes = std::size_t(mask_words(shape)) * 8;
-    const std::size_t texel_bytes = has_color ? 8 : 5;
+BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t bytes)
+    : channels_(channels), mask_words_(std::size_t(shape.mask_words())) {
+    const std::size_t mask_bytes = mask_words_ * 8;
+    const std::size_t texel_bytes = (channels.color ? 4U : 1U) + (channels.normal ? 4U : 0U);
     auto bytes_of = [&](const Layout& layout, int slots) {
         return layout.texels() * texel_bytes + std::size_t(slots) * mask_bytes;
     };
@@ -105,8 +96,8 @@ BrickPool::BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes) 
         if (layout.size.z <= limits.texture_3d_size && bytes_of(layout, slot_count_) <= bytes) break;
     }
     levels_ = layout.levels;
-    color_ = make_texture(has_color ? GL_RGBA8 : GL_R8, layout.size, GL_NEAREST);
-    normal_ = make_texture(GL_RGB10_A2, layout.size, GL_NEAREST);
+    color_ = make_texture(channels.color ? GL_RGBA8 : GL_R8, layout.size, GL_NEAREST);
+    if (channels.normal) normal_ = make_texture(GL_RGB10_A2, layout.size, GL_NEAREST);
     masks_ = gl::Buffer(std::size_t(slot_count_) * mask_bytes, "brick masks");
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
@@ -121,6 +112,22 @@ glm::ivec3 BrickPool::first_texel(int slot, int mip) const {
            glm::ivec3(0, 0, level.z);
 }
 
+std::vector<BrickPool::Layer> BrickPool::layers() const {
+    std::vector<Layer> layers;
+    for (std::size_t mip = 0; mip < levels_.size(); ++mip) {
+        Layer layer{color_.id(), GL_RED, GL_UNSIGNED_BYTE, int(mip), levels_[mip].w, 1};
+        if (channels_.color) {
+            layer.format = GL_RGBA;
+            layer.texel_bytes = 4;
+        }
+        layers.push_back(layer);
+        if (!channels_.normal) continue;
+        layers.push_back(
+            {normal_.id(), GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, int(mip), levels_[mip].w, 4});
+    }
+    return layers;
+}
+
 void BrickPool::bind_for_reading() const {
     glBindTextureUnit(TEXTURE_BRICK_MASKS, mask_texture_.id());
     glBindTextureUnit(TEXTURE_BRICK_COLOR, color_.id());
@@ -129,9 +136,25 @@ void BrickPool::bind_for_reading() const {
 
 void BrickPool::bind_for_writing() const {
     glBindImageTexture(IMAGE_BRICK_COLOR, color_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
-                       has_color_ ? GL_RGBA8 : GL_R8);
-    glBindImageTexture(IMAGE_BRICK_NORMAL, normal_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGB10_A2);
+                       channels_.color ? GL_RGBA8 : GL_R8);
+    if (channels_.normal)
+        glBindImageTexture(IMAGE_BRICK_NORMAL, normal_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RGB10_A2);
     masks_.bind_storage(SSBO_BRICK_MASKS);
+}
+
+void BrickPool::upload(int slot, const gl::Buffer& texels, std::size_t offset_bytes,
+                       std::span<const std::uint64_t> masks) const {
+    const glm::ivec3 texel = first_texel(slot);
+    const int side = levels_.front().w;
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, texels.id());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    // With a buffer bound, the pointer is an offset in it.
+    glTextureSubImage3D(color_.id(), 0, texel.x, texel.y, texel.z, side, side, side, GL_RED, GL_UNSIGNED_BYTE,
+                        reinterpret_cast<const void*>(offset_bytes));
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glNamedBufferSubData(masks_.id(), GLintptr(std::size_t(slot) * mask_words_ * 8),
+                         GLsizeiptr(masks.size_bytes()), masks.data());
 }
 
 }  // namespace cairn::renderer

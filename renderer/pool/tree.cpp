@@ -12,9 +12,9 @@
 namespace cairn::renderer {
 namespace {
 
-int block_count(const TreeShape& shape, std::size_t bytes) {
+int block_count(const TreeShape& shape, std::size_t bytes, std::size_t entry_bytes) {
     const gl::Limits limits = gl::query_limits();
-    const std::size_t block_bytes = std::size_t(shape.child_count()) * sizeof(interop::NodeEntry);
+    const std::size_t block_bytes = std::size_t(shape.child_count()) * entry_bytes;
     const std::size_t most =
         std::min({bytes / block_bytes, limits.texture_buffer_texels / std::size_t(shape.child_count()),
                   std::size_t(1) << 24U});
@@ -26,10 +26,22 @@ int block_count(const TreeShape& shape, std::size_t bytes) {
     return int(most);
 }
 
+gl::TextureHandle buffer_texture(GLenum format, const gl::Buffer& buffer) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    gl::TextureHandle texture(id);
+    glTextureBuffer(id, format, buffer.id());
+    return texture;
+}
+
 }  // namespace
 
-Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes, glm::uvec2 root_mask)
-    : shape_(shape), blocks_(block_count(shape, node_pool_bytes)), bricks_(brick_slots) {
+Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes, glm::uvec2 root_mask,
+           bool has_means)
+    : shape_(shape),
+      blocks_(block_count(shape, node_pool_bytes,
+                          sizeof(interop::NodeEntry) + (has_means ? sizeof(std::uint32_t) : 0))),
+      bricks_(brick_slots) {
     const std::size_t entry_total = std::size_t(blocks_.count()) * std::size_t(shape.child_count());
     entries_.resize(entry_total, interop::NodeEntry{});
     tiles_.resize(entry_total);
@@ -37,12 +49,16 @@ Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes,
     block_child_blocks_.resize(std::size_t(blocks_.count()), 0);
     block_birth_.resize(std::size_t(blocks_.count()), 0);
     slot_owner_.resize(std::size_t(brick_slots), none);
+    slot_tile_.resize(std::size_t(brick_slots));
     node_buffer_ = gl::Buffer(entry_total * sizeof(interop::NodeEntry), "node pool");
     node_buffer_.fill(0);
-    GLuint id = 0;
-    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
-    node_texture_ = gl::TextureHandle(id);
-    glTextureBuffer(id, GL_RGBA32UI, node_buffer_.id());
+    node_texture_ = buffer_texture(GL_RGBA32UI, node_buffer_);
+    if (has_means) {
+        means_.resize(entry_total, 0);
+        mean_buffer_ = gl::Buffer(entry_total * sizeof(std::uint32_t), "mean values of nodes");
+        mean_buffer_.fill(0);
+        mean_texture_ = buffer_texture(GL_R32UI, mean_buffer_);
+    }
 
     [[maybe_unused]] const int root_block = blocks_.take_free();  // the first one free is 0
     set_child_mask(0, root_mask);
@@ -67,11 +83,12 @@ void Tree::begin_round(std::uint32_t round, const std::vector<std::uint32_t>& br
 
 bool Tree::wants_children(std::uint32_t entry) const {
     const interop::NodeEntry& node = entries_[entry];
-    return still_there(entry) && node.children == 0 && tiles_[entry].level < shape_.max_level;
+    return still_there(entry) && node.children == 0 && (node.brick & NODE_FINAL) == 0 &&
+           tiles_[entry].level < shape_.max_level;
 }
 
 bool Tree::wants_brick(std::uint32_t entry) const {
-    return still_there(entry) && entries_[entry].brick == 0;
+    return still_there(entry) && (entries_[entry].brick & (NODE_SLOT | NODE_CONSTANT)) == 0;
 }
 
 void Tree::pin_path(std::uint32_t entry) {
@@ -93,6 +110,7 @@ std::optional<std::uint32_t> Tree::add_children(std::uint32_t entry) {
         entries_[e] = interop::NodeEntry{};
         tiles_[e] = child_of(tiles_[entry], shape_.n, child);
         mark_dirty(e);
+        link_orphan(e);
     }
     entries_[entry].children = first;
     mark_dirty(entry);
@@ -106,16 +124,18 @@ void Tree::set_child_mask(std::uint32_t entry, glm::uvec2 mask) {
 
 std::optional<int> Tree::add_brick(std::uint32_t entry, bool may_stay) {
     pin_path(entry);
-    const int slot = take_slot();
+    const std::uint32_t stamp = may_stay ? round_ : std::max(keep_since_, 1U) - 1;
+    const int slot = take_slot(stamp);
     if (slot < 0) return std::nullopt;
-    bricks_.touch(slot, may_stay ? round_ : std::max(keep_since_, 1U) - 1);
+    bricks_.touch(slot, stamp);
     slot_owner_[std::size_t(slot)] = entry;
-    entries_[entry].brick = std::uint32_t(slot) + 1;
+    slot_tile_[std::size_t(slot)] = tiles_[entry];
+    entries_[entry].brick |= std::uint32_t(slot) + 1;
     mark_dirty(entry);
     return slot;
 }
 
-int Tree::take_slot() {
+int Tree::take_slot(std::uint32_t limit) {
     if (const int slot = bricks_.take_free(); slot >= 0) return slot;
     if (!slots_sorted_) {
         old_slots_.clear();
@@ -128,8 +148,9 @@ int Tree::take_slot() {
     }
     while (!old_slots_.empty()) {
         const int slot = old_slots_.back();
+        if (is_old(bricks_.stamp(slot)) && bricks_.stamp(slot) >= limit) return -1;
         old_slots_.pop_back();
-        if (slot_owner_[std::size_t(slot)] == none || !is_old(bricks_.stamp(slot))) continue;
+        if (!is_old(bricks_.stamp(slot))) continue;
         evict_brick(slot);
         return bricks_.take_free();
     }
@@ -137,12 +158,52 @@ int Tree::take_slot() {
 }
 
 void Tree::evict_brick(int slot) {
-    const std::uint32_t owner = slot_owner_[std::size_t(slot)];
-    entries_[owner].brick = 0;
-    mark_dirty(owner);
-    slot_owner_[std::size_t(slot)] = none;
-    bricks_.release(slot);
+    if (records_evictions_) evicted_.push_back({slot_tile_[std::size_t(slot)], slot});
+    release_slot(slot);
     ++counters_.bricks_evicted;
+}
+
+void Tree::release_slot(int slot) {
+    const std::uint32_t owner = slot_owner_[std::size_t(slot)];
+    const Tile& tile = slot_tile_[std::size_t(slot)];
+    if (owner == none) {
+        orphans_.erase(tile);
+    } else {
+        entries_[owner].brick &= ~NODE_SLOT;
+        mark_dirty(owner);
+        slot_owner_[std::size_t(slot)] = none;
+    }
+    bricks_.release(slot);
+}
+
+void Tree::set_constant(std::uint32_t entry, glm::u8vec4 mean) {
+    if (const std::optional<int> held = slot(entry)) release_slot(*held);
+    add_flags(entry, NODE_CONSTANT | (mean == glm::u8vec4(0) ? NODE_EMPTY : 0U));
+    if (mean == glm::u8vec4(0)) return;
+    if (means_.empty())
+        throw Error(Fault::internal, "node pool", "a constant tile of content that was said to have none");
+    means_[entry] = std::uint32_t(mean.x) | std::uint32_t(mean.y) << 8U | std::uint32_t(mean.z) << 16U |
+                    std::uint32_t(mean.w) << 24U;
+}
+
+/// The brick of a node that goes stays in its slot, with what is known of the tile.
+void Tree::orphan_brick(std::uint32_t entry) {
+    const std::optional<int> held = slot(entry);
+    if (!held) return;
+    slot_owner_[std::size_t(*held)] = none;
+    orphans_.emplace(tiles_[entry], Orphan{*held, entries_[entry].brick & ~NODE_SLOT});
+}
+
+/// Gives a new node the brick that an earlier node of its tile left behind.
+void Tree::link_orphan(std::uint32_t entry) {
+    if (orphans_.empty()) return;
+    const auto orphan = orphans_.find(tiles_[entry]);
+    if (orphan == orphans_.end()) return;
+    const auto [held, flags] = orphan->second;
+    entries_[entry].brick = flags | (std::uint32_t(held) + 1);
+    slot_owner_[std::size_t(held)] = entry;
+    orphans_.erase(orphan);
+    ++counters_.bricks_relinked;
 }
 
 bool Tree::can_evict_block(int block) const {
@@ -177,9 +238,8 @@ int Tree::take_block() {
 
 void Tree::evict_block(int block) {
     const std::uint32_t first = std::uint32_t(block) * std::uint32_t(shape_.child_count());
-    for (std::uint32_t e = first; e < first + std::uint32_t(shape_.child_count()); ++e) {
-        if (entries_[e].brick != 0) evict_brick(int(entries_[e].brick) - 1);
-    }
+    for (std::uint32_t e = first; e < first + std::uint32_t(shape_.child_count()); ++e)
+        orphan_brick(e);
     const std::uint32_t parent = block_parent_[std::size_t(block)];
     entries_[parent].children = 0;
     mark_dirty(parent);
@@ -200,6 +260,10 @@ void Tree::upload() {
             ++end;
         node_buffer_.write(dirty_[i] * sizeof(interop::NodeEntry), &entries_[dirty_[i]],
                            (end - i) * sizeof(interop::NodeEntry));
+        if (!means_.empty()) {
+            mean_buffer_.write(dirty_[i] * sizeof(std::uint32_t), &means_[dirty_[i]],
+                               (end - i) * sizeof(std::uint32_t));
+        }
         i = end;
     }
     dirty_.clear();
@@ -207,6 +271,7 @@ void Tree::upload() {
 
 void Tree::bind_for_reading() const {
     glBindTextureUnit(TEXTURE_NODES, node_texture_.id());
+    if (!means_.empty()) glBindTextureUnit(TEXTURE_NODE_MEANS, mean_texture_.id());
 }
 
 }  // namespace cairn::renderer

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "gl/handle.h"
 #include "renderer/pool/lru.h"
 #include "renderer/pool/tree_shape.h"
+#include "shaders/interop/config.h"
 #include "shaders/interop/types.h"
 
 namespace cairn::renderer {
@@ -19,21 +21,39 @@ namespace cairn::renderer {
 ///
 /// The node pool is an array of NodeEntry in blocks of n^3: the children of one tile. Block 0 holds the root
 /// alone, in its entry 0. Both stores are bounded and recycle what was not used for longest; a parent
-/// outlives its children.
+/// outlives its children. The bricks of nodes that go stay in their slots, as orphans, for as long as their
+/// own stamps let them: when their tiles come back, they are linked again.
 class Tree {
 public:
     /// @param root_mask    child_mask of the root tile.
+    /// @param has_means    tiles may be constant without being empty: then what they hold is kept beside the
+    /// entries.
     /// @throws Error (Fault::usage) when `node_pool_bytes` holds fewer blocks than one path from root to
     /// leaf.
-    Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes, glm::uvec2 root_mask);
+    Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes, glm::uvec2 root_mask,
+         bool has_means = false);
 
     [[nodiscard]] const TreeShape& shape() const { return shape_; }
     [[nodiscard]] const Tile& tile(std::uint32_t entry) const { return tiles_[entry]; }
     /// The mirror of an entry, as the next upload() leaves it on the GPU.
     [[nodiscard]] const interop::NodeEntry& node(std::uint32_t entry) const { return entries_[entry]; }
     [[nodiscard]] std::uint32_t entry_count() const { return std::uint32_t(entries_.size()); }
-    [[nodiscard]] std::size_t size_bytes() const { return node_buffer_.size_bytes(); }
-    [[nodiscard]] int bricks_resident() const { return bricks_.used_count(); }
+    /// Slot of its brick in the pool; none where it holds none.
+    [[nodiscard]] std::optional<int> slot(std::uint32_t entry) const {
+        const std::uint32_t number = entries_[entry].brick & NODE_SLOT;
+        return number != 0 ? std::optional(int(number) - 1) : std::nullopt;
+    }
+    [[nodiscard]] std::size_t size_bytes() const {
+        return node_buffer_.size_bytes() + mean_buffer_.size_bytes();
+    }
+    [[nodiscard]] int bricks_resident() const { return bricks_.used_count(); }  ///< orphans included
+
+    /// A brick whose node is gone.
+    struct Orphan {
+        int slot = 0;
+        std::uint32_t flags = 0;  ///< NODE_*, of the node
+    };
+    [[nodiscard]] const std::unordered_map<Tile, Orphan, TileHash>& orphans() const { return orphans_; }
 
     /// Starts a round; stamps what rays used in the pass before it, and their ancestors.
     /// @param brick_stamps  one a slot: the last round whose rays used it.
@@ -56,8 +76,20 @@ public:
 
     /// Gives the tile a slot for its brick, or none when all slots were given out in this round.
     /// @param may_stay  counts as used in this round; else as used just before keep_since(), so that it takes
-    ///                  the place of nothing that is needed now.
+    ///                  the place of nothing that is needed now. Such a brick only takes the place of what
+    ///                  was not used for longer: two of them never take turns.
     [[nodiscard]] std::optional<int> add_brick(std::uint32_t entry, bool may_stay = true);
+
+    /// What a tile turned out to hold when it was produced. It stays known as long as the tile has its entry,
+    /// though the brick may go.
+    void set_produced(std::uint32_t entry) { add_flags(entry, NODE_PRODUCED); }
+    [[nodiscard]] bool was_produced(std::uint32_t entry) const {
+        return (entries_[entry].brick & NODE_PRODUCED) != 0;
+    }
+    /// Every voxel has this value, as in Produced::mean: gives its slot back, and none will be wanted again.
+    void set_constant(std::uint32_t entry, glm::u8vec4 mean);
+    /// Nothing finer adds to it: it will want no children. Not to be said of a tile that has any.
+    void set_final(std::uint32_t entry) { add_flags(entry, NODE_FINAL); }
 
     /// Sends what changed to the GPU.
     void upload();
@@ -66,8 +98,19 @@ public:
     struct Counters {
         std::uint64_t bricks_evicted = 0;
         std::uint64_t nodes_evicted = 0;
+        std::uint64_t bricks_relinked = 0;  ///< that came back with their node, without being produced
     };
     [[nodiscard]] const Counters& counters() const { return counters_; }
+
+    /// A brick that lost its slot, whose texels are there until the slot's next brick is written.
+    struct Evicted {
+        Tile tile;
+        int slot = 0;
+    };
+    /// From now on, remember what was evicted. Off at first.
+    void record_evictions(bool record) { records_evictions_ = record; }
+    /// What was evicted since the last call, oldest first.
+    [[nodiscard]] std::vector<Evicted> take_evicted() { return std::exchange(evicted_, {}); }
 
 private:
     static constexpr std::uint32_t none = 0xFFFFFFFFU;
@@ -87,10 +130,18 @@ private:
     [[nodiscard]] bool is_old(std::uint32_t stamp) const {
         return stamp < round_ && (keep_since_ == 0 || stamp < keep_since_);
     }
-    [[nodiscard]] int take_slot();
+    /// One that was last used before `limit`, if none is free; -1: there is none.
+    [[nodiscard]] int take_slot(std::uint32_t limit);
     [[nodiscard]] int take_block();
     [[nodiscard]] bool can_evict_block(int block) const;
     void evict_brick(int slot);
+    void release_slot(int slot);
+    void add_flags(std::uint32_t entry, std::uint32_t flags) {
+        entries_[entry].brick |= flags;
+        mark_dirty(entry);
+    }
+    void orphan_brick(std::uint32_t entry);
+    void link_orphan(std::uint32_t entry);
     void gather_old_block(int block);
     void evict_block(int block);
     void pin_path(std::uint32_t entry);
@@ -106,15 +157,22 @@ private:
     std::vector<std::uint32_t> block_parent_;  // entry whose children the block holds
     std::vector<int> block_child_blocks_;      // how many of its entries have children
     std::vector<std::uint32_t> block_birth_;   // the round that filled it
-    std::vector<std::uint32_t> slot_owner_;    // entry, or none
-    std::vector<int> old_slots_;               // of this round, oldest last
+    std::vector<std::uint32_t> slot_owner_;    // entry, or none: free, or an orphan's
+    std::vector<Tile> slot_tile_;              // of those that are not free
+    std::unordered_map<Tile, Orphan, TileHash> orphans_;
+    std::vector<Evicted> evicted_;
+    bool records_evictions_ = false;
+    std::vector<int> old_slots_;  // of this round, oldest last
     bool slots_sorted_ = false;
     /// Stamp and number of the blocks that may be taken away in this round: a heap, the oldest on top.
     std::vector<std::pair<std::uint32_t, int>> old_blocks_;
     bool blocks_gathered_ = false;
     std::vector<std::uint32_t> dirty_;
+    std::vector<std::uint32_t> means_;  // of each entry, RGBA8; empty without them
     gl::Buffer node_buffer_;
     gl::TextureHandle node_texture_;
+    gl::Buffer mean_buffer_;
+    gl::TextureHandle mean_texture_;
     Counters counters_;
 };
 

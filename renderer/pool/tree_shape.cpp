@@ -1,5 +1,7 @@
 #include "renderer/pool/tree_shape.h"
 
+#include <bit>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
@@ -7,28 +9,81 @@
 
 namespace cairn::renderer {
 
+/// Positions of voxels and their borders stay within 63 bits.
+constexpr int most_voxel_bits = 60;
+
 gl::Defines TreeShape::defines(bool has_color) const {
     return {{"TREE_N", std::to_string(n)},
             {"BRICK_M", std::to_string(m)},
             {"BRICK_MIPS", std::to_string(mips)},
-            {"MAX_LEVEL", std::to_string(max_level)},
+            {"MAX_LEVEL", std::to_string(has_windows() ? levels_in_window() : max_level)},
+            {"WINDOWS", has_windows() ? "1" : "0"},
             {"HAS_COLOR", has_color ? "1" : "0"}};
 }
 
+int TreeShape::tiles_across(int levels) const {
+    int across = 1;
+    for (int level = 0; level < levels; ++level)
+        across *= n;
+    return across;
+}
+
+int TreeShape::voxel_side(int level) const {
+    const auto finest = std::bit_ceil(unsigned(resolution()));
+    return int((1U << unsigned(LATTICE_BITS)) / finest) * tiles_across(max_level - level);
+}
+
+bool TreeShape::has_windows() const {
+    return cell_base() == 2 && voxel_level(max_level) > MAX_RESOLUTION_BITS;
+}
+
+int TreeShape::levels_in_window() const {
+    return (window_tile_bits - m_shift()) / n_shift();
+}
+
+namespace {
+
+void check_factors(int n, int m) {
+    if (n != 2 && n != 3 && n != 4 && n != 8) {
+        throw Error(Fault::usage, "tree", fmt::format("N = {} is not 2, 3, 4 or 8", n));
+    }
+    if (n == 3 && m != 27 && m != 81) {
+        throw Error(Fault::usage, "tree", fmt::format("M = {} is not 27 or 81", m),
+                    "with N = 3, bricks are cut in thirds too; M = 8, 16, 32 and 64 go with N = 2, 4 and 8");
+    }
+    if (n != 3 && m != 8 && m != 16 && m != 32 && m != 64) {
+        throw Error(Fault::usage, "tree", fmt::format("M = {} is not 8, 16, 32 or 64", m),
+                    "M = 27 and 81 go with N = 3");
+    }
+}
+
+}  // namespace
+
 TreeShape make_tree_shape(int n, int m, int max_resolution, bool with_mips) {
-    if (n != 2 && n != 4) throw Error(Fault::usage, "tree", fmt::format("N = {} is not 2 or 4", n));
-    if (m != 8 && m != 16 && m != 32 && m != 64) {
-        throw Error(Fault::usage, "tree", fmt::format("M = {} is not 8, 16, 32 or 64", m));
+    check_factors(n, m);
+    if (with_mips && n == 3) {
+        throw Error(Fault::usage, "tree", "bricks have no mip levels with N = 3",
+                    "choose N = 2, 4 or 8, or leave the mips out");
     }
     if (max_resolution < m || max_resolution > 1 << MAX_RESOLUTION_BITS) {
         throw Error(Fault::usage, "maximum resolution",
                     fmt::format("{} is not between {} (one brick) and {}", max_resolution, m,
                                 1 << MAX_RESOLUTION_BITS));
     }
-    TreeShape shape{n, m, 0};
+    TreeShape shape{.n = n, .m = m, .max_level = 0};
     shape.mips = with_mips ? shape.n_shift() : 0;
     while (std::int64_t(shape.resolution()) * n <= max_resolution)
         ++shape.max_level;
+    return shape;
+}
+
+TreeShape make_deep_tree_shape(int n, int m, int max_level) {
+    check_factors(n, m);
+    const TreeShape shape{.n = n, .m = m, .max_level = max_level};
+    const int most = (most_voxel_bits - shape.m_shift()) / shape.n_shift();
+    if (max_level < 0 || max_level > most) {
+        throw Error(Fault::usage, "tree", fmt::format("{} levels are not between 0 and {}", max_level, most));
+    }
     return shape;
 }
 

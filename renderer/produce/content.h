@@ -2,6 +2,7 @@
 
 #include <glm/glm.hpp>
 
+#include "renderer/pool/brick_pool.h"
 #include "renderer/produce/oracle.h"
 #include "renderer/produce/producer.h"
 #include "voxelizer/grid.h"
@@ -24,7 +25,16 @@ public:
     [[nodiscard]] virtual const voxelizer::Grid& grid() const = 0;
     /// Do bricks hold colours? Else everything has uniform_color(), linear.
     [[nodiscard]] virtual bool has_color() const = 0;
+    [[nodiscard]] virtual Channels channels() const { return {.color = has_color()}; }
     [[nodiscard]] virtual glm::vec3 uniform_color() const = 0;
+    /// Does the producer fill the mip levels of bricks (TreeShape::mips)?
+    [[nodiscard]] virtual bool fills_mips() const { return false; }
+    /// May the producer find tiles constant and not empty? Then the tree keeps their values, and rays march
+    /// them.
+    [[nodiscard]] virtual bool has_constant() const { return false; }
+    /// May it find that nothing finer adds to a tile (Produced::low_frequency)? Then each tile is produced
+    /// before it is subdivided, so that what a ray sees does not depend on what was looked at before.
+    [[nodiscard]] virtual bool has_low_frequency() const { return false; }
 };
 
 }  // namespace cairn::renderer

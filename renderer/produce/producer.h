@@ -13,11 +13,17 @@ struct BrickRequest {
     int slot = 0;
 };
 
-/// What a tile turned out to hold once it was produced.
+/// What a tile turned out to hold once it was produced (Crassin et al. 2008, section 6.1). It depends on the
+/// tile alone.
 struct Produced {
-    bool constant = false;  ///< every voxel, border included, has the same value: no brick is needed
-    glm::u8vec4 mean{
-        0};  ///< of the voxels, as the brick pool's colour texels are; x alone where it has one channel
+    /// Every voxel at the tile's own level has the same value (the border too, unless that is 0): no brick is
+    /// needed. Its children may hold more. Not with a value other than 0 unless Content::has_constant().
+    bool constant = false;
+    /// Nothing finer would add to what the tile holds at its own level: it is not subdivided. Only with
+    /// Content::has_low_frequency().
+    bool low_frequency = false;
+    /// Of the voxels, as the brick pool's colour texels are; x alone where it has one channel. 0 is empty.
+    glm::u8vec4 mean{0};
 };
 
 /// Fills bricks on demand (Crassin et al. 2008, section 6.1).

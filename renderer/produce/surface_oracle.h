@@ -10,32 +10,57 @@
 
 namespace cairn::renderer {
 
+/// For maps keyed by cells.
+struct CellHash {
+    [[nodiscard]] std::size_t operator()(const voxelizer::Cell& cell) const {
+        return TileHash{}({cell.level, cell.position});
+    }
+};
+
 /// Cuts node masks from the bitmask pyramid of a surface (Forest et al. 2009, section 2.3).
 ///
-/// One pyramid covers the root cube; below its finest level each tile that is asked for gets a pyramid of its
-/// own, voxelized from its own triangles.
+/// One pyramid covers the root cube; below its finest level each of its cells that is asked for gets a
+/// pyramid of its own, voxelized from its own triangles. Where N is a power of two, tiles are cells of the
+/// pyramid, and the masks are exact. With N = 3 a tile counts as empty when all cells around it are that are
+/// a quarter of its side or smaller.
 class SurfaceOracle final : public Oracle {
 public:
-    /// Refers to all four, which must outlive it.
+    /// Refers to all three, which must outlive it.
     SurfaceOracle(const TreeShape& shape, const voxelizer::GpuSurface& surface,
                   voxelizer::Voxelizer& voxelizer, voxelizer::TriangleIndex& lists);
 
     [[nodiscard]] glm::uvec2 child_mask(const Tile& tile) override;
+    [[nodiscard]] bool is_empty(const Tile& tile) override;
 
 private:
-    /// The pyramid of one tile; its finest level is `finest` (log2 of voxels across the root cube).
+    /// The pyramid of one cell; its finest level is `finest` (log2 of cells across the lattice's root cube).
     struct Patch {
         voxelizer::BitmaskPyramid pyramid;
-        Tile tile;
+        voxelizer::Cell cell;
         int finest = 0;
+
+        [[nodiscard]] bool at(const voxelizer::Cell& c) const {
+            return pyramid.level(finest - c.level).at(c.position - (cell.position << (c.level - cell.level)));
+        }
     };
-    [[nodiscard]] const Patch& patch_for(const Tile& tile);
+    /// A closed box in lattice units.
+    struct Box {
+        glm::ivec3 low, high;
+    };
+    /// The one that tells of a cell. Stays until drop_if_too_many().
+    [[nodiscard]] const Patch& patch_for(const voxelizer::Cell& cell);
+    void drop_if_too_many();
+    /// May the surface meet a cell's part in the box? Told by cells of level `finest`.
+    [[nodiscard]] bool may_meet(const Box& box, const voxelizer::Cell& cell, int finest);
+    [[nodiscard]] bool may_meet(const Tile& tile);
 
     TreeShape shape_;
     const voxelizer::GpuSurface& surface_;
     voxelizer::Voxelizer& voxelizer_;
     voxelizer::TriangleIndex& lists_;
-    std::unordered_map<Tile, Patch, TileHash> patches_;
+    int list_step_;      ///< levels from a cell that has a list to the next
+    int finest_needed_;  ///< level of the smallest cells
+    std::unordered_map<voxelizer::Cell, Patch, CellHash> patches_;
 };
 
 }  // namespace cairn::renderer

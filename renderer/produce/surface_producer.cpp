@@ -1,6 +1,7 @@
 #include "renderer/produce/surface_producer.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "renderer/produce/tile_lists.h"
 #include "shaders/interop/bindings.h"
@@ -31,15 +32,26 @@ std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
     return voxels_a_brick(shape) * (has_color ? 9 : 6) * sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
 }
 
+/// The voxels of that side that lattice coordinates lie in: rounded down.
+glm::ivec3 voxel_of(const glm::ivec3& place, int voxel) {
+    const glm::ivec3 cut = place / voxel;
+    return cut - glm::ivec3(glm::lessThan(place, cut * voxel));
+}
+
 }  // namespace
 
 SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface,
                                  voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders)
-    : shape_(shape), surface_(surface), lists_(lists), pairs_(surface.chunks.size()) {
+    : shape_(shape),
+      surface_(surface),
+      lists_(lists),
+      tell_empty_(shape.cell_base() != 2 || surface.has_mask),
+      pairs_(surface.chunks.size()) {
     const std::size_t brick_bytes = scratch_bytes_a_brick(shape, surface.has_color);
     batch_ = int(std::clamp<std::size_t>(scratch_budget_bytes / brick_bytes, 1, 0xFFFF));
     gl::Defines defines = shape.defines(surface.has_color);
     resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
+    defines.emplace_back("TELL_EMPTY", tell_empty_ ? "1" : "0");
     defines.emplace_back("HAS_MASK", surface.has_mask ? "1" : "0");
     masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
     summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
@@ -51,15 +63,23 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     for (gl::Program* program : {&splat_, &resolve_})
         program->set("sums_offset", unsigned(std::size_t(batch_) * voxels_a_brick(shape) * 2));
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
+    if (tell_empty_)
+        found_ = gl::Buffer(std::size_t(batch_) * sizeof(std::uint32_t), "bricks that hold anything");
     pair_buffer_ = gl::Buffer(pair_capacity * sizeof(interop::BrickPair), "brick pairs");
 }
 
 std::vector<Produced> SurfaceProducer::produce(std::span<const BrickRequest> requests,
                                                const BrickPool& pool) {
+    std::vector<Produced> produced(requests.size());
     for (std::size_t i = 0; i < requests.size(); i += std::size_t(batch_)) {
-        produce_batch(requests.subspan(i, std::min(std::size_t(batch_), requests.size() - i)), pool);
+        const std::size_t count = std::min(std::size_t(batch_), requests.size() - i);
+        produce_batch(requests.subspan(i, count), pool);
+        if (!tell_empty_) continue;
+        const auto found = found_.read_all<std::uint32_t>(count);
+        for (std::size_t k = 0; k < count; ++k)
+            produced[i + k].constant = found[k] == 0;
     }
-    return std::vector<Produced>(requests.size());
+    return produced;
 }
 
 void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
@@ -67,7 +87,7 @@ void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
         list.clear();
     for (std::size_t i = 0; i < requests.size(); ++i) {
         const Tile& tile = requests[i].tile;
-        const std::span<const std::uint32_t> triangles = lists_.list(cell_of(tile, shape_));
+        const std::span<const std::uint32_t> triangles = triangles_of(tile, shape_, lists_, listed_);
         for (int mip = 0; mip <= shape_.mips; ++mip)
             gather_pairs_of_mip(tile, std::uint32_t(i), mip, triangles);
     }
@@ -78,14 +98,14 @@ void SurfaceProducer::gather_pairs_of_mip(const Tile& tile, std::uint32_t number
     const int side = shape_.mip_side(mip);
     const int rows = std::max(1, turns_a_pair / (side * (surface_.has_mask ? 81 : 17)));
     const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
-    const int shift = LATTICE_BITS - shape_.voxel_level(tile.level) + mip;
+    const int voxel = shape_.voxel_side(tile.level) << mip;
     const glm::ivec3 low = glm::ivec3(tile.position) * (shape_.m >> mip) - 1;  // of the border
     for (const std::uint32_t triangle : triangles) {
         // Row r is touched when [r, r + 1] meets the triangle's extent: one more on each side of whole
         // numbers.
         const voxelizer::TriangleIndex::Box& box = lists_.box(triangle);
-        const glm::ivec3 first = glm::max(((box.low - 1) >> shift) - low, 0);
-        const glm::ivec3 last = glm::min((box.high >> shift) - low, side - 1);
+        const glm::ivec3 first = glm::max(voxel_of(box.low - 1, voxel) - low, 0);
+        const glm::ivec3 last = glm::min(voxel_of(box.high, voxel) - low, side - 1);
         if (first.x > last.x) continue;  // near the border of a coarser mip alone
         for (int z = first.z; z <= last.z; z += step.y) {
             for (int y = first.y; y <= last.y; y += step.x) {
@@ -119,8 +139,9 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     std::vector<interop::BrickTile> tiles;
     tiles.reserve(requests.size());
     for (const BrickRequest& request : requests) {
-        const int shift = LATTICE_BITS - shape_.voxel_level(request.tile.level);
-        tiles.push_back({glm::ivec4(glm::ivec3(request.tile.position) * shape_.m, shift),
+        const int side = shape_.voxel_side(request.tile.level);
+        const int size = shape_.cell_base() == 2 ? int(std::bit_width(unsigned(side))) - 1 : side;
+        tiles.push_back({glm::ivec4(glm::ivec3(request.tile.position) * shape_.m, size),
                          glm::ivec4(request.slot, 0, 0, 0)});
     }
     tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::BrickTile));
@@ -129,14 +150,19 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     for (std::size_t chunk = 0; chunk < pairs_.size(); ++chunk)
         splat(chunk);
 
-    const auto count = unsigned(requests.size());
-    auto blocks = [&](int mip) {
-        const auto side = std::size_t(shape_.mip_blocks_a_side(mip));
-        return side * side * side;
-    };
+    pack(requests.size(), pool);
+}
+
+/// Turns what was gathered for the batch into bricks.
+void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
+    const auto count = unsigned(tile_count);
     tiles_.bind_storage(SSBO_BRICK_TILES);
     scratch_.bind_storage(SSBO_BRICK_SCRATCH);
     pool.bind_for_writing();
+    if (tell_empty_) {
+        found_.fill(0);
+        found_.bind_storage(SSBO_BRICK_FOUND);
+    }
     auto run = [&](const gl::Program& program, std::size_t threads) {
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
         program.use();
@@ -145,9 +171,9 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     };
     for (int mip = 0; mip <= shape_.mips; ++mip) {
         masks_.set("mip", mip);
-        run(masks_, count * blocks(mip));
+        run(masks_, count * std::size_t(shape_.blocks(mip)));
     }
-    run(summarize_, count * ((blocks(0) + 63) / 64));
+    run(summarize_, count * ((std::size_t(shape_.blocks()) + 63) / 64));
     glMemoryBarrier(
         GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // rays of an earlier pass may still read evicted slots
     resolve_.set("pool_levels", pool.levels());

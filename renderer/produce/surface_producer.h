@@ -26,6 +26,7 @@ public:
 
 private:
     void produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool);
+    void pack(std::size_t tile_count, const BrickPool& pool);
     void gather_pairs(std::span<const BrickRequest> requests);
     void gather_pairs_of_mip(const Tile& tile, std::uint32_t number, int mip,
                              std::span<const std::uint32_t> triangles);
@@ -34,14 +35,19 @@ private:
     TreeShape shape_;
     const voxelizer::GpuSurface& surface_;
     voxelizer::TriangleIndex& lists_;
+    /// The oracle may let tiles through that hold nothing: with N = 3, and where it decides alpha masks
+    /// exactly and bricks sample them. Then the driver is asked.
+    bool tell_empty_;
     int batch_ = 1;
     gl::Program splat_;
     gl::Program masks_;
     gl::Program summarize_;
     gl::Program resolve_;
     gl::Buffer tiles_;
+    gl::Buffer found_;  // SSBO_BRICK_FOUND
     gl::Buffer scratch_;
     gl::Buffer pair_buffer_;
+    std::vector<std::uint32_t> listed_;                   // triangles of a tile
     std::vector<std::vector<interop::BrickPair>> pairs_;  // one list a surface chunk
 };
 

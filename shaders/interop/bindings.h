@@ -39,19 +39,53 @@
 #define SSBO_BRICK_TILES 6    // BrickTile: the tiles of the batch
 #define SSBO_BRICK_SCRATCH 7  // masks, then sums, of every voxel of the batch (scratch.glsl)
 #define SSBO_BRICK_MASKS 0    // masks and summaries of the brick pool (resolve passes, which read no surface)
+#define SSBO_BRICK_FOUND 1    // a word a tile of the batch: not 0 where any of its voxels is occupied (the same passes)
 #define IMAGE_BRICK_COLOR 0
 #define IMAGE_BRICK_NORMAL 1
 
 // The marcher.
 #define UBO_VIEW 0
+#define UBO_WINDOWS 1  // their number, then MarchWindow from the finest on; only for trees that are marched through them
 #define SSBO_RAYS 0     // RayState a pixel
 #define SSBO_LISTS 1    // pixels that wait: four lists of one pixel count each
 #define SSBO_QUERIES 2  // MarchCounters, then the tile query buffer
 #define SSBO_USAGE 3    // the last pass that used each brick; then bits: queries already made in this pass
 #define SSBO_IMAGE 4    // RGBA8 a pixel
+#define SSBO_BLOCK_STARTS 5
 #define TEXTURE_NODES 0
 #define TEXTURE_BRICK_MASKS 1
 #define TEXTURE_BRICK_COLOR 2   // or coverage alone
 #define TEXTURE_BRICK_NORMAL 3
+#define TEXTURE_NODE_MEANS 5    // RGBA8 in a uint, a node entry: what constant tiles hold
+#define TEXTURE_SHADOW_ENDS 4
+#define TEXTURE_MESH_NEAREST 8   // R32F a pixel: distance of the nearest mesh, MESH_MISS where there is none
+#define TEXTURE_MESH_SURFACE 9   // RGBA32UI a pixel: what is there (shaders/mesh/mesh_surface.glsl)
+#define TEXTURE_PROXY_SPAN 10    // RG32F a pixel: distance of the proxy's first face, minus that of its last
+#define TEXTURE_PROXY_FACES 11   // R32F a pixel: fronts less backs
+
+// Meshes that are rasterized (beside the surface's 0 to 4, and UBO_VIEW).
+#define UBO_MESH_VIEW 1
+#define SSBO_MESH_TRIANGLES 5  // MeshTriangle: a batch of triangles, as this view sees them
+
+// Of volumes (shaders/march/volume.glsl).
+#define UBO_VOLUME 3
+#define TEXTURE_TRANSFER 12  // DENSITY_STEPS^2 texels: column s0, row s1; rgb: mean emission, a: mean extinction
+
+// The soft shadow map. Its passes bind only these, and draw nothing of the marcher's.
+#define ATTRIBUTE_SHADOW_POSITION 0
+#define ATTRIBUTE_SHADOW_NORMAL 1
+#define ATTRIBUTE_SHADOW_COLOR 2
+#define ATTRIBUTE_SHADOW_TEXCOORD 3
+#define ATTRIBUTE_SHADOW_PATCH 0     // MicroPatch, one an instance
+#define TEXTURE_SHADOW_BASE_COLOR 0  // of the material that is drawn
+#define TEXTURE_SHADOW_OCCLUDERS 0   // inverse depths: the closest occluders, or the furthest
+#define TEXTURE_SHADOW_RECEIVERS 1   // inverse depths; 0 = no receiver
+#define TEXTURE_SHADOW_PYRAMID 2     // the least inverse depth of receivers, level by level; SHADOW_NONE = none
+#define TEXTURE_SHADOW_HIDDEN 3      // sums of what micro-patches hide of the light
+#define TEXTURE_SHADOW_HIDDEN_FURTHEST 4
+#define TEXTURE_SHADOW_VISIBLE 5     // the soft shadow map
+#define IMAGE_SHADOW_LEVEL 0         // what a compute pass writes
+#define SSBO_SHADOW_COUNTS 0         // SHADOW_COUNT_*, then the micro-patches of each row of the occluder map
+#define SSBO_SHADOW_PATCHES 1        // MicroPatch
 
 #endif

@@ -82,6 +82,13 @@
 #define MATERIAL_WRAP_T_SHIFT 2
 #define MATERIAL_MASK_BIT 16     // alpha-masked: texels under the cutoff are holes
 
+// NodeEntry.brick: the slot + 1, and what is known of the tile.
+#define NODE_SLOT 0x00FFFFFFu
+#define NODE_PRODUCED 0x10000000u  // it has been produced, and the flags below tell what it turned out to be
+#define NODE_FINAL 0x20000000u     // nothing finer adds to it: it has no children
+#define NODE_EMPTY 0x40000000u     // constant, and the value is 0
+#define NODE_CONSTANT 0x80000000u  // one value is all that it holds at its own level: it has no brick
+
 // The tile queries of one pass; what finds no room is asked for again by the next pass.
 #define QUERY_CAPACITY 65536
 #define QUERY_COUNTS 65536  // counts of the rays that ask, behind the queries; a query's is number query % QUERY_COUNTS
@@ -95,8 +102,27 @@
 // Voxels across the root cube stay below this, because a ray state packs three coordinates in 63 bits.
 #define MAX_RESOLUTION_BITS 21
 
+// Deeper trees are marched through windows (renderer/march/windows.h): cubes of 2^3 tiles around the eye, one a level.
+// Log2 of a window's tile, at most, in the voxels that the ray counts in: floats tell 2^-7 of one.
+#define WINDOW_TILE_BITS 16
+#define MAX_WINDOWS 64
+// A tile of a window: the number of its entry, or
+#define WINDOW_EMPTY 4294967295u    // there is nothing in it
+#define WINDOW_MISSING 2147483648u  // plus the entry of its nearest ancestor, which must be subdivided
+
 // A mean normal that looks away from the viewer by less than this (cosine) belongs to a silhouette, not to a back side.
 #define SILHOUETTE_BEND 0.35
+
+// How a ray finds its next tile; in this order in renderer/march/traversal.h.
+#define TRAVERSAL_RESTART 0
+#define TRAVERSAL_STACKLESS 1
+#define TRAVERSAL_MINI_STACK 2
+
+// Rays of a block of PIXEL_BLOCK_SIDE^2 pixels start together (renderer/march/block_starts.h).
+#define PIXEL_BLOCK_SIDE 8
+
+// Ends of shadow rays to a directional light: a grid across its direction (renderer/march/shadow_ends.h).
+#define SHADOW_ENDS_SIDE 128
 
 // What a picture shows; in this order in renderer.h.
 #define SHOW_SURFACE 0
@@ -109,7 +135,30 @@
 #define LEVEL_PHASE_G 4.8
 #define LEVEL_PHASE_B 2.7
 
+// Meshes that are rasterized: triangles a draw call, pixels of a picture that are drawn at once (in whole rows), the
+// distance of what is not there, and how near the eye a mesh may come, in sides of the mesh.
+#define MESH_BATCH_TRIANGLES 262144
+#define MESH_STRIP_PIXELS 4194304
+#define MESH_MISS 1e30
+// A voxel that touches a triangle has its centre at most half a diagonal from its plane; a little more, where the surface
+// bends.
+#define MESH_OWN_HEIGHT 1.125
+#define MESH_NEAREST_PART 9.5367431640625e-7
+// Densities that a brick tells apart; a transfer function is linear between them.
+#define DENSITY_STEPS 256
+// A voxel's chord is cut in at most so many steps.
+#define VOLUME_MOST_STEPS 32
+
 // A ray stops when less light than this is left: half a step of an 8-bit image.
 #define OPAQUE_TRANSMITTANCE (1.0 / 512.0)
+
+// Soft shadow maps. Inverse depths stand in textures; no surface is ever as close to the light as this one.
+#define SHADOW_NONE 1e30
+#define SHADOW_LIST_GROUP 32
+#define SHADOW_COUNT_PATCHES 0
+#define SHADOW_COUNT_FRAGMENTS 1  // texels of all penumbra extents: low word, then high word
+#define SHADOW_COUNT_ROWS 3
+// Texels that a penumbra extent reaches past where rounding may have put its edges.
+#define SHADOW_EXTENT_SLACK 0.0625
 
 #endif

@@ -5,7 +5,7 @@
 // brick) holds is the same. A voxel stays a sheet: it gives its share once. Shares add up, so their weighted sum is opaque
 // wherever both mips are.
 //
-// f is taken where the ray enters a coarse cell, and linear in the size: no logarithm, whose last bits drivers differ in.
+// f is one for the whole coarse cell, and linear in the size: no logarithm, whose last bits drivers differ in.
 
 bool is_occupied(ivec3 voxel, Place place, int mip) {
     const ivec3 b = place_in(voxel, own_shift_of(place) + mip, M_SHIFT - mip);
@@ -24,7 +24,7 @@ bool take_both(inout Ray ray, Place place, out bool goes_on) {
 #else
     const bool blends = true;
 #endif
-    const float size = blended_size(own_shift_of(place), width_at(ray));
+    const float size = blended_size(own_shift_of(place), width_at_cell(ray, fine_shift + 1));
     const float f = blends ? clamp(size / side - 1.0, 0.0, 1.0) : 0.0;
     const ivec3 cell = cell_of(ray.voxel, fine_shift + 1);
     goes_on = true;

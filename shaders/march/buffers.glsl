@@ -4,6 +4,16 @@
 #include "interop/types.h"
 #include "pool/brick_masks.glsl"
 
+#ifndef HAS_CONSTANT
+#define HAS_CONSTANT 0
+#endif
+#ifndef HAS_FINAL
+#define HAS_FINAL 0
+#endif
+#ifndef BLENDED
+#define BLENDED 0
+#endif
+
 layout(std140, binding = UBO_VIEW) uniform ViewBlock { MarchView view; };
 layout(std430, binding = SSBO_RAYS) buffer RayBlock { RayState rays[]; };
 layout(std430, binding = SSBO_LISTS) buffer ListBlock { uint lists[]; };
@@ -14,11 +24,15 @@ layout(std430, binding = SSBO_QUERIES) buffer QueryBlock {
 layout(std430, binding = SSBO_USAGE) buffer UsageBlock { uint usage[]; };
 layout(std430, binding = SSBO_IMAGE) buffer ImageBlock { uint image_rgba8[]; };
 layout(binding = TEXTURE_NODES) uniform usamplerBuffer nodes;
+#if HAS_CONSTANT
+layout(binding = TEXTURE_NODE_MEANS) uniform usamplerBuffer node_means;
+#endif
 layout(binding = TEXTURE_BRICK_MASKS) uniform usamplerBuffer brick_masks;
 layout(binding = TEXTURE_BRICK_COLOR) uniform sampler3D brick_color;
 layout(binding = TEXTURE_BRICK_NORMAL) uniform sampler3D brick_normal;
 
 uniform uint pass_number;
+uniform uint query_capacity;      // at most QUERY_CAPACITY
 uniform uint usage_query_offset;  // word in usage[] where the query bits start
 #if PROGRESSIVE
 uniform bool stand_in;            // the last pass of a frame: no ray may wait

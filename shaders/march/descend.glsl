@@ -1,4 +1,4 @@
-// Down the tree, from its root to the tile that a ray asks for.
+// Down the tree, to the tile that a ray asks for.
 // The brick that a ray is in.
 struct Place {
     int slot;         // -1: none
@@ -6,6 +6,9 @@ struct Place {
     int mip;          // of the brick: the one that is shown, or the finer of the two that are blended
 #if PROGRESSIVE
     int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in
+#endif
+#if HAS_CONSTANT
+    uint entry;       // of the node that is constant, where one is
 #endif
     uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
 };
@@ -22,29 +25,24 @@ int own_shift_of(Place place) {
 // Log2 of the side of the voxels that are shown (of the finer ones).
 int voxel_shift_of(Place place) { return own_shift_of(place) + place.mip; }
 
-// The finer of the mips that a cone of this width sees of a brick with voxels of this size.
-int mip_for(int own_shift, float width) {
-#if BLENDED
-    return blended_mip(own_shift, width);
-#else
-    return 0;
-#endif
-}
-
 #if BLENDED
 // Has the cone grown past what the place was chosen for? The root's coarsest mip goes on for ever.
-bool needs_coarser(Place place, float width) {
+bool needs_coarser(Ray ray, Place place) {
 #if PROGRESSIVE
     if (place.brick_shift != place.tile_shift) return false;  // it stands in
 #endif
-    if (place.tile_shift == ROOT_SHIFT && place.mip == BRICK_MIPS - 1) return false;
-    return blended_size(own_shift_of(place), width) >= float(cell_side(voxel_shift_of(place) + 1));
+    const int own_shift = own_shift_of(place);
+    if (place.mip + 1 < BRICK_MIPS) return sees_mip(ray, own_shift, place.mip + 1);
+    return place.tile_shift < ROOT_SHIFT && sees_mip(ray, own_shift + N_SHIFT, 0);
 }
 #endif
 
 #define DESCENT_FOUND 0    // place holds a brick
 #define DESCENT_EMPTY 1    // nothing here: `empty_shift` is the side of the cell to step over
 #define DESCENT_MISSING 2  // the tile was asked for
+#if HAS_CONSTANT
+#define DESCENT_CONSTANT 3  // place holds a tile of one value, which is not 0
+#endif
 
 void use_brick(inout Place place, int slot) {
     place.slot = slot;
@@ -57,12 +55,32 @@ void use_brick(inout Place place, int slot) {
 struct Ancestor {
     int slot;  // -1: none
     int tile_shift;
+#if HAS_CONSTANT
+    uint entry;
+    bool is_constant;  // in place of the slot
+#endif
 };
+
+Ancestor ancestor_of(uvec4 node, uint entry, int tile_shift) {
+#if HAS_CONSTANT
+    return Ancestor(brick_slot(node), tile_shift, entry, is_constant(node) && !is_empty(node));
+#else
+    return Ancestor(brick_slot(node), tile_shift);
+#endif
+}
 
 // Shows the cell around the ray's voxel by the ancestor's brick, or as empty.
 int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int empty_shift) {
     atomicAdd(counters.stood_in, 1u);
     empty_shift = shift;
+#if HAS_CONSTANT
+    if (ancestor.is_constant) {
+        place.tile_shift = shift;
+        place.brick_shift = ancestor.tile_shift;
+        place.entry = ancestor.entry;
+        return DESCENT_CONSTANT;
+    }
+#endif
     if (ancestor.slot < 0) return DESCENT_EMPTY;
     place.tile_shift = shift;
     place.brick_shift = ancestor.tile_shift;
@@ -71,25 +89,81 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 }
 #endif
 
-// Finds the tile that the ray's cone asks for at its voxel: kd-restart.
+// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far the whole
+// tile is away, or the mip's cell around the voxel: whatever way the ray came and wherever it started, it sees the same.
+bool shows(Ray ray, int tile_shift) {
+#if BLENDED
+    return sees_mip(ray, tile_shift - M_SHIFT, 0);
+#else
+    const float voxel_side = float(cell_side(tile_shift - M_SHIFT));
+#if RAYS_WIDEN
+    const vec3 low = vec3(cell_low(ray.voxel, tile_shift)) - ray.origin;
+    const vec3 away = max(max(low, -(low + float(cell_side(tile_shift)))), vec3(0.0));
+    return voxel_side <= ray.cone_base + ray.cone_slope * length(away);
+#else
+    return voxel_side <= ray.cone_base;
+#endif
+#endif
+}
+
+// Where a descent begins, and what it leaves for the next one. With windows, at the window's tile.
+#if WINDOWS || TRAVERSAL == TRAVERSAL_RESTART
+#include "march/trail_restart.glsl"
+#elif TRAVERSAL == TRAVERSAL_STACKLESS
+#include "march/trail_stackless.glsl"
+#else
+#include "march/trail_mini_stack.glsl"
+#endif
+
+// Finds the tile that the ray's cone asks for at its voxel.
 int descend(Ray ray, out Place place, out int empty_shift) {
-    const float width = width_at(ray);
-    uint entry = 0u;
-    uvec4 node = texelFetch(nodes, 0);
+    uint entry;
+    uvec4 node;
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
     place.mip = 0;
 #if PROGRESSIVE
     place.brick_shift = ROOT_SHIFT;
 #endif
+#if HAS_CONSTANT
+    place.entry = 0u;
+#endif
     place.summary = uvec2(0u);
     empty_shift = ROOT_SHIFT;
+#if WINDOWS
+    entry = window_tile(ray);
+    if (entry == WINDOW_EMPTY) return DESCENT_EMPTY;
+    if ((entry & WINDOW_MISSING) != 0u) {
+        query(entry & ~WINDOW_MISSING, QUERY_CHILDREN);
+#if PROGRESSIVE
+        if (stand_in) return stand_in_for_cell(Ancestor(-1, ROOT_SHIFT), ROOT_SHIFT, place, empty_shift);
+#endif
+        return DESCENT_MISSING;
+    }
+    node = texelFetch(nodes, int(entry));
+#else
+    place.tile_shift = resume(ray, entry, node);
+#if BLENDED
+    // Around this voxel the ray may see a tile whose children it saw elsewhere.
+    if (place.tile_shift < ROOT_SHIFT && shows(ray, place.tile_shift + N_SHIFT)) {
+        forget_trail();
+        place.tile_shift = resume(ray, entry, node);
+    }
+#endif
+#if PROGRESSIVE
+    place.brick_shift = place.tile_shift;
+#endif
+#endif
     if (MAX_LEVEL > 0 && has_no_child(node)) return DESCENT_EMPTY;  // nothing in the whole scene
 #if PROGRESSIVE
-    Ancestor ancestor = Ancestor(-1, ROOT_SHIFT);
+    Ancestor ancestor = ancestor_of(uvec4(0u), 0u, ROOT_SHIFT);
 #endif
     for (int level = 0; level < MAX_LEVEL; ++level) {
-        if (float(cell_side(place.tile_shift - M_SHIFT)) <= width) break;
+        if (place.tile_shift == M_SHIFT || shows(ray, place.tile_shift)) break;
+#if HAS_FINAL || TREE_N == 8
+        if (is_final(node)) break;
+#endif
+        leave_trail(ray, entry, node, place.tile_shift);
         const ivec3 c = place_in(ray.voxel, place.tile_shift - N_SHIFT, N_SHIFT);
         const int empty = empty_child_shift(node, c);
         if (empty >= 0) {
@@ -97,7 +171,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
             return DESCENT_EMPTY;
         }
 #if PROGRESSIVE
-        if (brick_slot(node) >= 0) ancestor = Ancestor(brick_slot(node), place.tile_shift);
+        if (brick_slot(node) >= 0 || is_constant(node)) ancestor = ancestor_of(node, entry, place.tile_shift);
         else ask(2u * entry_count + entry);
 #endif
         if (!has_children(node)) {
@@ -115,13 +189,23 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     place.brick_shift = place.tile_shift;
 #endif
     if (brick_slot(node) < 0) {
+        if (is_constant(node)) {
+#if HAS_CONSTANT
+            place.entry = entry;
+            if (!is_empty(node)) return DESCENT_CONSTANT;
+#endif
+            empty_shift = place.tile_shift;
+            return DESCENT_EMPTY;
+        }
         query(entry, QUERY_BRICK);
 #if PROGRESSIVE
         if (stand_in) return stand_in_for_cell(ancestor, place.tile_shift, place, empty_shift);
 #endif
         return DESCENT_MISSING;
     }
-    place.mip = mip_for(place.tile_shift - M_SHIFT, width);
+#if BLENDED
+    while (place.mip + 1 < BRICK_MIPS && sees_mip(ray, place.tile_shift - M_SHIFT, place.mip + 1)) ++place.mip;
+#endif
     use_brick(place, brick_slot(node));
     return DESCENT_FOUND;
 }

@@ -1,16 +1,28 @@
 // The ray-marcher's one loop. The includer supplies visit(); primary and shadow rays differ only in that.
 //
-// The tree is walked by restart from the root (kd-restart; Crassin et al. 2008, section 5.1): a ray finds the tile that
-// its cone asks for, marches its brick, and starts again behind it. Progress is by integer neighbour steps: every step
+// A ray finds the tile that its cone asks for, marches its brick, and looks for the next tile behind it (Crassin et al.
+// 2008, section 5.1), in one of several ways (TRAVERSAL; descend.glsl). Progress is by integer neighbour steps: every step
 // moves one coordinate of `voxel` by at least one in the ray's direction, so no epsilon is needed and no ray can stall.
 //
 // With PROGRESSIVE, for frames that must not take long, rays also ask for the bricks of the nodes that they pass, without
 // waiting for them; and when time is up (stand_in), what is missing is shown by the nearest ancestor that has a brick.
 //
-// Needs the defines TREE_N, BRICK_M, BRICK_MIPS, MAX_LEVEL (the tree's depth), HAS_COLOR, PROGRESSIVE and BLENDED.
+// With HAS_CONSTANT, tiles may hold one value that is not 0 (Crassin et al. 2008, section 4.2): the includer supplies
+// visit_constant() too. With HAS_FINAL, tiles may have nothing finer to show. With BLENDED, rays see two mips of a brick, whose
+// shares lead over from one size of voxels to the next (blend.glsl).
+//
+// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth, or with WINDOWS that under a window's tiles), HAS_COLOR,
+// PROGRESSIVE and TRAVERSAL; WINDOWS for trees whose voxels a ray cannot count (windows.glsl); BRICK_MIPS and BLENDED where
+// there are mips; and of the includer RAYS_WIDEN: whether cone_slope is other than 0.
 #include "march/buffers.glsl"
 #include "march/tree_cells.glsl"
 #include "march/ray.glsl"
+#if WINDOWS
+#include "march/windows.glsl"
+#else
+bool leave_window(Ray ray) { return false; }  // the one there is
+bool enter_windows(inout Ray ray) { return enter_root(ray); }
+#endif
 
 #define MARCH_DONE 0
 #define MARCH_MISSING 1
@@ -27,8 +39,27 @@ struct Sample {
     float share;          // weight against the other mip's voxels in the same place, (0, 1]
 };
 
+// Loop turns that visit() takes at most; a pass counts them (TURN_BUDGET).
+#ifndef VISIT_TURNS
+#define VISIT_TURNS 0
+#endif
+
 // Takes one occupied voxel; false stops the ray.
 bool visit(inout Ray ray, Sample s);
+
+#if HAS_CONSTANT
+// A tile of one value that a ray crosses, as so many voxels that are all alike.
+struct ConstantRun {
+    vec4 mean;        // as the texels of brick_color
+    float t_in;       // distance where the ray enters it
+    float t_out;      // and where it leaves it, or ends
+    int voxel_shift;  // log2 of a voxel's side
+    int voxels;       // that the ray crosses; at most 3 BRICK_M - 2
+};
+
+// Takes it; false stops the ray. `entered` is the ray as it comes into the tile.
+bool visit_constant(Ray entered, ConstantRun run);
+#endif
 
 #include "march/queries.glsl"
 #if BLENDED
@@ -36,6 +67,24 @@ bool visit(inout Ray ray, Sample s);
 #endif
 #include "march/descend.glsl"
 #include "march/skim.glsl"
+
+#if HAS_CONSTANT
+// Through a tile of one value; false when the ray is done.
+bool cross_constant(inout Ray ray, Place place, inout int turns) {
+    const Ray entered = ray;
+    ConstantRun run;
+    run.mean = unpackUnorm4x8(texelFetch(node_means, int(place.entry)).x);
+    run.t_in = ray.t;
+    run.voxel_shift = voxel_shift_of(place);
+    const bool goes_on = step_over(ray, place.tile_shift);
+    run.t_out = min(ray.t, ray.t_end);
+    // A step from voxel to voxel changes one coordinate by one.
+    const ivec3 steps = abs(cell_of(ray.voxel, run.voxel_shift) - cell_of(entered.voxel, run.voxel_shift));
+    run.voxels = min(steps.x + steps.y + steps.z, 3 * BRICK_M);
+    turns += run.voxels;
+    return visit_constant(entered, run) && (goes_on || leave_window(ray));
+}
+#endif
 
 #define SEEK_OCCUPIED 0
 #define SEEK_DONE 1
@@ -53,15 +102,23 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
             turns += MAX_LEVEL + 1;
             const int descent = descend(ray, place, empty_shift);
             if (descent == DESCENT_MISSING) return SEEK_MISSING;
+#if HAS_CONSTANT
+            if (descent == DESCENT_CONSTANT) {
+                if (!cross_constant(ray, place, turns)) return SEEK_DONE;
+                continue;
+            }
+#endif
         }
+        bool goes_on = true;
         if (place.slot < 0) {
-            if (!step_over(ray, empty_shift)) return SEEK_DONE;
+            goes_on = step_over(ray, empty_shift);
         } else {
             const int skimmed = skim(ray, place, turns);
             if (skimmed == SKIM_OCCUPIED) return SEEK_OCCUPIED;
-            if (skimmed == SKIM_ENDED) return SEEK_DONE;
+            goes_on = skimmed != SKIM_ENDED;
             place.slot = -1;
         }
+        if (!goes_on && !leave_window(ray)) return SEEK_DONE;
     }
 }
 
@@ -102,24 +159,33 @@ int march(inout Ray ray) {
 #if PROGRESSIVE
     place.brick_shift = ROOT_SHIFT;
 #endif
+#if HAS_CONSTANT
+    place.entry = 0u;
+#endif
     place.summary = uvec2(0u);
     int turns = 0;
+    forget_trail();
     for (;;) {
-        ++turns;
+        turns += (1 + VISIT_TURNS) * (BLENDED != 0 ? 5 : 1);
         const int found = seek(ray, place, turns);
         if (found != SEEK_OCCUPIED) return found == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
         const ivec3 tile = cell_of(ray.voxel, place.tile_shift);
         bool goes_on = true;
 #if BLENDED
-        if (needs_coarser(place, width_at(ray))) {
-            place.slot = -1;
-            continue;
-        }
-        if (!take_both(ray, place, goes_on) || !goes_on) return MARCH_DONE;
+        const bool seen_on = take_both(ray, place, goes_on);
 #else
-        if (!take_voxel(ray, place, place.mip, 1.0, goes_on) || !goes_on) return MARCH_DONE;
+        const bool seen_on = take_voxel(ray, place, 0, 1.0, goes_on);
 #endif
-        if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) place.slot = -1;
+        if (!seen_on) return MARCH_DONE;
+        if (!goes_on) {
+            if (!leave_window(ray)) return MARCH_DONE;
+            place.slot = -1;
+        } else if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) {
+            place.slot = -1;
+        }
+#if BLENDED
+        if (place.slot >= 0 && needs_coarser(ray, place)) place.slot = -1;
+#endif
     }
 }
 

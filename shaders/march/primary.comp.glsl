@@ -1,26 +1,37 @@
 // One thread is one waiting primary ray.
-// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=0 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0 SHOW_TREE=0
-// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 BLENDED=1 SHOW_TREE=1
-// defines: TREE_N=2 BRICK_M=8 BRICK_MIPS=1 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 SHOW_TREE=1
-// defines: TREE_N=4 BRICK_M=8 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0 SHOW_TREE=0
-// defines: TREE_N=4 BRICK_M=64 BRICK_MIPS=2 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 BLENDED=0 SHOW_TREE=0
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=0
+// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=0 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=0 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES WITH_PROXY
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=2 WITH_PROXY
+// defines: TREE_N=3 BRICK_M=27 MAX_LEVEL=5 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=2
+// defines: TREE_N=8 BRICK_M=16 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=1 HAS_CONSTANT=1 HAS_FINAL=1
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=8 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2 HAS_CONSTANT=1
+// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 BLENDED=1 SHOW_TREE=1 TRAVERSAL=2
+// defines: TREE_N=2 BRICK_M=8 BRICK_MIPS=1 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 SHOW_TREE=1 TRAVERSAL=1
+// defines: TREE_N=8 BRICK_M=8 BRICK_MIPS=3 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=8 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0 SHOW_TREE=0 TRAVERSAL=0
+#define RAYS_WIDEN 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #if SHOW_TREE
 #include "march/show_tree.glsl"
 #endif
 
-layout(local_size_x = 64) in;
+#include "march/launch.glsl"
 
-uniform uint ray_count;
-uniform bool first_pass;     // all pixels, in 8x8 blocks; else those of the list
-uniform uint list_in;        // words in lists[]
 uniform uint list_out;
 uniform uint shadow_list;
 
 RayState state;
-
 bool visit(inout Ray ray, Sample s) {
+#ifdef WITH_MESHES
+    if (s.t > mesh.t) return false;
+#endif
     const float left = behind(state.color.a, coverage_of(s), s.share);
     const float weight = state.color.a - left;
     vec3 color = view.surface_color.rgb;
@@ -31,22 +42,56 @@ bool visit(inout Ray ray, Sample s) {
 #endif
     const vec3 normal = filtered(brick_normal, s).xyz * 2.0 - 1.0;
 #if SHOW_TREE
+#if WINDOWS
+    first_level = windows.of[ray.window].shift_level.w;
+#endif
     color = tree_color(s, color, normal);
 #endif
     state.color.rgb += weight * color;
 #if BLENDED
     // Each voxel's own: the mean of two mips' normals would turn over all at once while their shares change.
-    state.normal_depth.xyz += weight * facing(normal, ray.direction);
+    state.normal_depth.xyz += weight * facing_normal(normal, ray.direction);
 #else
     state.normal_depth.xyz += weight * normal / max(length(normal), 1e-3);
 #endif
     if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
         state.voxel_t_weight.w = floatBitsToUint(weight);
         state.normal_depth.w = s.t;
+#if WINDOWS
+        seen_window = ray.window;
+#endif
     }
     state.color.a = left;
     return state.color.a > OPAQUE_TRANSMITTANCE;
 }
+
+#if HAS_CONSTANT
+// Voxel by voxel, as if they stood in a brick, without a normal.
+bool visit_constant(Ray entered, ConstantRun run) {
+#if HAS_COLOR
+    vec3 color = run.mean.rgb / max(run.mean.a, 1.0 / 512.0);
+    color *= color;
+    const float coverage = run.mean.a;
+#else
+    const vec3 color = view.surface_color.rgb;
+    const float coverage = run.mean.r;
+#endif
+    for (int voxel = 0; voxel < run.voxels && state.color.a > OPAQUE_TRANSMITTANCE; ++voxel) {
+        const float t_in = entered.t;
+        const bool goes_on = step_over(entered, run.voxel_shift);
+        const float left = behind(state.color.a, coverage, 1.0);
+        const float weight = state.color.a - left;
+        state.color.rgb += weight * color;
+        if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
+            state.voxel_t_weight.w = floatBitsToUint(weight);
+            state.normal_depth.w = 0.5 * (t_in + entered.t);
+        }
+        state.color.a = left;
+        if (!goes_on) break;
+    }
+    return state.color.a > OPAQUE_TRANSMITTANCE;
+}
+#endif
 
 // Is there light to be stopped on its way to this point?
 bool needs_shadow_ray(PixelRay seen) {
@@ -56,28 +101,19 @@ bool needs_shadow_ray(PixelRay seen) {
 }
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= ray_count) return;
-    ivec2 pixel;
-    if (first_pass) {
-        const int blocks = (view.size_shadow.x + 7) / 8;
-        const int block = int(i / 64u);
-        pixel = ivec2(block % blocks, block / blocks) * 8 + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
-        if (pixel.x >= view.size_shadow.x || pixel.y >= view.band.y) return;
-    } else {
-        const int p = int(lists[list_in + i]);
-        pixel = ivec2(p % view.size_shadow.x, p / view.size_shadow.x);
-    }
-    const uint index = uint(pixel.y * view.size_shadow.x + pixel.x);
+    Launch launch;
+    if (!find_pixel(launch)) return;
+    const ivec2 pixel = launch.pixel;
+    const uint index = launch.index;
     const PixelRay seen = pixel_ray(pixel);
-    Ray ray = make_ray(seen.origin, seen.direction, 1e30, view.eye.w * seen.skipped, view.eye.w);
+    Ray ray = launched_ray(launch, seen);
 
     bool inside = true;
     if (first_pass) {
         state.color = vec4(0.0, 0.0, 0.0, 1.0);
         state.normal_depth = vec4(0.0);
         state.voxel_t_weight = uvec4(0u);
-        inside = enter_root(ray);
+        inside = enter(ray, launch, seen);
     } else {
         state = rays[index];
         load_position(ray, state);
@@ -94,12 +130,30 @@ void main() {
             state.color.rgb /= 1.0 - state.color.a;
             state.color.a = 0.0;
         }
-        if (needs_shadow_ray(seen)) {
+#if WINDOWS
+        const PixelRay shown = pixel_ray(pixel);  // in the window of what it shows
+#else
+        const PixelRay shown = seen;
+#endif
+        bool waits = needs_shadow_ray(shown);
+#ifdef WITH_MESHES
+        // Until the pixel is written, its place keeps the light that reaches the voxels; negative: not known yet.
+        image_rgba8[index] = floatBitsToUint(waits ? -1.0 : 1.0);
+        waits = waits || mesh_needs_shadow_ray(mesh, seen, state.color.a);
+#endif
+        if (waits) {
             state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
+#if WINDOWS
+            state.voxel_t_weight.z = uint(seen_window);
+#endif
             rays[index] = state;
             lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
         } else {
+#ifdef WITH_MESHES
+            write_pixel(pixel, state, 1.0, mesh, 1.0);
+#else
             write_pixel(pixel, state, 1.0);
+#endif
         }
     }
 }

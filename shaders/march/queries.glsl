@@ -8,7 +8,7 @@ void ask(uint bit) {
     const uint old = atomicOr(usage[usage_query_offset + bit / 32u], 1u << (bit % 32u));
     if ((old >> (bit % 32u) & 1u) != 0u) return;  // another ray has asked
     const uint place = atomicAdd(counters.queries, 1u);
-    if (place < uint(QUERY_CAPACITY)) queries[place] = bit;
+    if (place < query_capacity) queries[place] = bit;
 }
 
 void query(uint entry, uint kind) { ask(2u * entry + kind); }

@@ -10,6 +10,10 @@ struct Ray {
     ivec3 voxel;          // finest-level voxel that the ray is in
     float cone_base;      // pixel width at t is cone_base + cone_slope * t
     float cone_slope;
+#if WINDOWS
+    int window;           // that the ray is in; lengths and positions are in its voxels
+    bool from_eye;        // `origin` is the eye
+#endif
 };
 
 Ray make_ray(vec3 origin, vec3 direction, float t_end, float cone_base, float cone_slope) {
@@ -24,19 +28,16 @@ Ray make_ray(vec3 origin, vec3 direction, float t_end, float cone_base, float co
     ray.voxel = ivec3(0);
     ray.cone_base = cone_base;
     ray.cone_slope = cone_slope;
+#if WINDOWS
+    ray.window = 0;
+    ray.from_eye = false;
+#endif
     return ray;
 }
 
-// Width of the ray's cone where it is. Exactly the same wherever it is asked: what a ray compares it with must not depend on
-// how a compiler contracts the sum.
-float width_at(Ray ray) {
-    precise float width = ray.cone_base + ray.cone_slope * ray.t;
-    return width;
-}
-
-// Puts the ray where it enters the root cube, at ray.t or behind; false when it misses it.
+// Puts the ray where it enters the marched cube, at ray.t or behind; false when it misses it.
 bool enter_root(inout Ray ray) {
-    const vec3 side = vec3(float(ROOT_SIDE));
+    const vec3 side = vec3(float(MARCHED_SIDE));
     const vec3 low = -ray.origin;
     const vec3 high = side - ray.origin;
     // An inert axis bounds nothing when the origin lies between its planes, and everything when it does not.
@@ -51,26 +52,38 @@ bool enter_root(inout Ray ray) {
     if (t_near > t_far || t_near >= ray.t_end) return false;
     ray.t = t_near;
     ray.voxel = clamp(ivec3(floor(clamp(ray.origin + ray.direction * t_near, vec3(0.0), side))), ivec3(0),
-                      ivec3(ROOT_SIDE - 1));
+                      ivec3(MARCHED_SIDE - 1));
     return true;
 }
 
+// After a start inside the root cube: rounding must not have carried the voxel over a plane that the ray, by what
+// step_over() computes, has still before it. So a ray that starts late takes the way of one that started early.
+void stay_behind_planes(inout Ray ray) {
+    const bvec3 forward = equal(ray.positive, ivec3(1));
+    const vec3 bound = vec3(mix(ray.voxel + 1, ray.voxel, forward));
+    const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(-1e30), ray.inert);
+    const ivec3 back = mix(ivec3(0), mix(ivec3(1), ivec3(-1), forward), greaterThan(t, vec3(ray.t)));
+    ray.voxel = clamp(ray.voxel + back, ivec3(0), ivec3(ROOT_SIDE - 1));
+}
+
 // Steps over the aligned cell around the ray's voxel, to the voxel behind it; false when the ray has
-// left the root cube or come to its end.
+// left the marched cube or come to its end.
 bool step_over(inout Ray ray, int shift) {
     const ivec3 low = cell_low(ray.voxel, shift);
     const ivec3 high = low + (cell_side(shift) - 1);
-    const bvec3 forward = equal(ray.positive, ivec3(1));
-    const vec3 bound = vec3(mix(low, high + 1, forward));
+    const ivec3 last = mix(low, high, equal(ray.positive, ivec3(1)));  // before the plane where it leaves
+    const vec3 bound = vec3(last + ray.positive);
     const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(1e30), ray.inert);
-    const float t_exit = max(min(t.x, min(t.y, t.z)), ray.t);
-    const bool x = t.x <= t.y && t.x <= t.z;
-    const bool y = !x && t.y <= t.z;
-    const bvec3 leaves = bvec3(x, y, !x && !y);
-    const ivec3 inside = clamp(ivec3(floor(ray.origin + ray.direction * t_exit)), low, high);
-    // Rounding must not carry the other coordinates backwards.
-    const ivec3 kept = mix(min(inside, ray.voxel), max(inside, ray.voxel), forward);
-    ray.voxel = mix(kept, mix(low - 1, high + 1, forward), leaves);
+    const float t_plane = min(t.x, min(t.y, t.z));
+    const float t_exit = max(t_plane, ray.t);
+    // Rounding must carry the other coordinates neither out of the cell nor backwards.
+    const ivec3 inside = ivec3(floor(ray.origin + ray.direction * t_exit));
+    const ivec3 kept = clamp(inside, min(ray.voxel, last), max(ray.voxel, last));
+    const bool x = t.x == t_plane;
+    const bool y = !x && t.y == t_plane;
+    const ivec3 leaves = ivec3(x, y, !x && !y);
+    ray.voxel = mix(kept, last + 2 * ray.positive - 1, equal(leaves, ivec3(1)));
     ray.t = t_exit;
-    return all(greaterThanEqual(ray.voxel, ivec3(0))) && all(lessThan(ray.voxel, ivec3(ROOT_SIDE))) && t_exit < ray.t_end;
+    const uvec3 place = uvec3(ray.voxel);
+    return max(place.x, max(place.y, place.z)) < uint(MARCHED_SIDE) && t_exit < ray.t_end;
 }

@@ -1,4 +1,5 @@
 // From what a primary ray gathered and how much of the light reaches it, to a pixel.
+#include "march/pixel_ray.glsl"
 
 // Linear to sRGB (IEC 61966-2-1).
 vec3 srgb_from_linear(vec3 c) {
@@ -6,52 +7,82 @@ vec3 srgb_from_linear(vec3 c) {
     return mix(12.92 * clamped, 1.055 * pow(clamped, vec3(1.0 / 2.4)) - 0.055, greaterThan(clamped, vec3(0.0031308)));
 }
 
-// Where a pixel's ray starts and goes; distances along it count from `origin`, which is `skipped` from the eye.
-struct PixelRay {
-    vec3 origin;
-    vec3 direction;  // unit
-    float skipped;
-};
-
-// `pixel` in the band.
-PixelRay pixel_ray(ivec2 pixel) {
-    const vec2 place = (vec2(pixel + ivec2(0, view.band.x)) + 0.5) / vec2(view.size_shadow.xy) * 2.0 - 1.0;
-    const vec3 across = place.x * view.right.xyz - place.y * view.up.xyz;
-    const float slant = length(view.forward.xyz + across);
-    PixelRay ray;
-    ray.origin = view.eye.xyz + view.forward.w * across;
-    ray.direction = (view.forward.xyz + across) / slant;
-    ray.skipped = view.forward.w * slant;
-    return ray;
-}
+#if WINDOWS
+vec4 light_there() { return windows.of[seen_window].light; }
+#else
+vec4 light_there() { return view.light; }
+#endif
 
 vec3 direction_to_light(vec3 point) {
-    return view.light.w > 0.5 ? normalize(view.light.xyz - point) : view.light.xyz;
+    const vec4 light = light_there();
+    return light.w > 0.5 ? normalize(light.xyz - point) : light.xyz;
 }
 
-// A gathered normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only
-// because its surface bends away in it, and is seen edge on.
-vec3 facing(vec3 gathered, vec3 direction) {
-    const float size = length(gathered);
-    if (size < 1e-6) return -direction;
-    const vec3 normal = gathered / size;
+// A normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only because its
+// surface bends away in it, and is seen edge on; so does the interpolated normal of a mesh.
+vec3 turned_to_viewer(vec3 normal, vec3 direction) {
     const float away = dot(normal, direction);
     if (away <= 0.0) return normal;
     return away < SILHOUETTE_BEND ? normalize(normal - away * direction) : -normal;
 }
-vec3 facing_normal(RayState state, vec3 direction) { return facing(state.normal_depth.xyz, direction); }
 
-void write_pixel(ivec2 pixel, RayState state, float visibility) {
-    const float alpha = 1.0 - state.color.a;
-    vec3 color = view.background.rgb;
-    if (alpha > 0.0) {
-        const PixelRay seen = pixel_ray(pixel);
-        const vec3 normal = facing_normal(state, seen.direction);
-        const vec3 point = seen.origin + seen.direction * state.normal_depth.w;
-        const float facing = max(dot(normal, direction_to_light(point)), 0.0);
-        const float sky = view.light_color.w * (0.75 + 0.25 * normal.y);
-        const vec3 light = view.light_color.rgb * (sky + (1.0 - view.light_color.w) * facing * visibility);
-        color = state.color.rgb * light + state.color.a * view.background.rgb;
-    }
+// A gathered normal.
+vec3 facing_normal(vec3 gathered, vec3 direction) {
+    const float size = length(gathered);
+    if (size < 1e-6) return -direction;
+    return turned_to_viewer(gathered / size, direction);
+}
+vec3 facing_normal(RayState state, vec3 direction) { return facing_normal(state.normal_depth.xyz, direction); }
+
+// What a surface of base colour 1 sends to the viewer.
+vec3 light_on(vec3 point, vec3 normal, float visibility) {
+    const float facing = max(dot(normal, direction_to_light(point)), 0.0);
+    const float sky = view.light_color.w * (0.75 + 0.25 * normal.y);
+    return view.light_color.rgb * (sky + (1.0 - view.light_color.w) * facing * visibility);
+}
+
+vec3 light_on_voxels(RayState state, PixelRay seen, float visibility) {
+    const vec3 normal = facing_normal(state, seen.direction);
+    return light_on(seen.origin + seen.direction * state.normal_depth.w, normal, visibility);
+}
+
+void store_pixel(ivec2 pixel, vec3 color, float alpha) {
     image_rgba8[pixel.y * view.size_shadow.x + pixel.x] = packUnorm4x8(vec4(srgb_from_linear(color), alpha));
 }
+void write_pixel(ivec2 pixel, RayState state, float visibility) {
+    const float alpha = 1.0 - state.color.a;
+    uint encoded = uint(view.band.w);
+    if (alpha > 0.0) {
+        const vec3 light = light_on_voxels(state, pixel_ray(pixel), visibility);
+        const vec3 color = state.color.rgb * light + state.color.a * view.background.rgb;
+        encoded = packUnorm4x8(vec4(srgb_from_linear(color), alpha));
+    }
+    image_rgba8[pixel.y * view.size_shadow.x + pixel.x] = encoded;
+}
+
+#ifdef WITH_MESHES
+#include "mesh/mesh_surface.glsl"
+
+vec3 mesh_point(MeshPixel mesh, PixelRay seen) { return seen.origin + seen.direction * mesh.t; }
+
+// Is there light to be stopped on its way to the mesh, and does anyone see it?
+bool mesh_needs_shadow_ray(MeshPixel mesh, PixelRay seen, float transmittance) {
+    if (!mesh_shadows || view.size_shadow.z == 0 || !is_there(mesh) || transmittance < OPAQUE_TRANSMITTANCE) return false;
+    return dot(turned_to_viewer(mesh.normal, seen.direction), direction_to_light(mesh_point(mesh, seen))) > 0.0;
+}
+
+// What stands behind the voxels: the mesh, or the background, whose alpha is 0.
+vec4 lit_mesh(MeshPixel mesh, PixelRay seen, float mesh_visibility) {
+    if (!is_there(mesh)) return vec4(view.background.rgb, 0.0);
+    const vec3 normal = turned_to_viewer(mesh.normal, seen.direction);
+    return vec4(mesh.color * light_on(mesh_point(mesh, seen), normal, mesh_visibility), 1.0);
+}
+
+void write_pixel(ivec2 pixel, RayState state, float visibility, MeshPixel mesh, float mesh_visibility) {
+    const PixelRay seen = pixel_ray(pixel);
+    vec4 color = state.color.a * lit_mesh(mesh, seen, mesh_visibility);
+    const float alpha = 1.0 - state.color.a;
+    if (alpha > 0.0) color += vec4(state.color.rgb * light_on_voxels(state, seen, visibility), alpha);
+    store_pixel(pixel, color.rgb, color.a);
+}
+#endif

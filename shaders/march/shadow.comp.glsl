@@ -1,12 +1,25 @@
 // One thread is one waiting shadow ray: from what a primary ray saw, to the light.
-// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=0 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0
-// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 BLENDED=1
-// defines: TREE_N=2 BRICK_M=8 BRICK_MIPS=1 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1
-// defines: TREE_N=4 BRICK_M=64 BRICK_MIPS=2 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 BLENDED=0
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 TRAVERSAL=1
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=0
+// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=2
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=0 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=0 WINDOWS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=3 BRICK_M=81 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2
+// defines: TREE_N=8 BRICK_M=16 MAX_LEVEL=3 HAS_COLOR=1 PROGRESSIVE=1 TRAVERSAL=2 HAS_CONSTANT=1 HAS_FINAL=1
+// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 BLENDED=1 TRAVERSAL=2
+// defines: TREE_N=2 BRICK_M=8 BRICK_MIPS=1 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 TRAVERSAL=1
+// defines: TREE_N=8 BRICK_M=8 BRICK_MIPS=3 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=8 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0 TRAVERSAL=0
+#define RAYS_WIDEN 0
 #include "march/march.glsl"
 #include "march/shade.glsl"
 
 layout(local_size_x = 64) in;
+
+layout(binding = TEXTURE_SHADOW_ENDS) uniform samplerBuffer shadow_ends;
 
 uniform uint ray_count;
 uniform uint list_in;
@@ -25,25 +38,75 @@ float receiver_rise;  // of the ray over that plane, for each unit of its length
 #define OWN_HEIGHT 1.75  // in voxels
 float own_reach_of(float side) { return side * clamp(2.5 / receiver_rise, 8.0, 64.0); }
 
-bool visit(inout Ray ray, Sample s) {
+// Is this voxel the receiver's own?
+bool is_own(Ray ray, vec3 centre, float t, float side) {
     float height = own_height;
     float reach = own_reach;
-#if PROGRESSIVE || BLENDED
-    if (s.side > own_side) {  // what stands in, and the coarser of two mips, are larger than the receiver's finest
-        height = max(height, OWN_HEIGHT * s.side);
-        reach = max(reach, own_reach_of(s.side));
+#if WINDOWS
+    const float scale = ldexp(1.0, N_SHIFT * (seen_window - ray.window));  // of the receiver's voxels in the ray's
+    height *= scale;
+    reach *= scale;
+    const vec3 from_receiver = centre - ray.origin;
+#else
+    const vec3 from_receiver = centre - receiver;
+#endif
+#if BLENDED
+    if (side > own_side && own_reach > 0.0) {  // what stands in, and the coarser of two mips
+        height *= side / own_side;
+        reach = max(reach, own_reach_of(side));
+    }
+#elif PROGRESSIVE
+    if (stand_in && own_reach > 0.0) {  // its own voxels may be larger than they should be
+        height = max(height, OWN_HEIGHT * side);
+        reach = max(reach, own_reach_of(side));
     }
 #endif
-    const bool own = s.t < reach && dot(s.centre - receiver, receiver_normal) < height;
-    if (!own) visibility = behind(visibility, coverage_of(s), s.share);
+    return t < reach && dot(from_receiver, receiver_normal) < height;
+}
+
+bool visit(inout Ray ray, Sample s) {
+    if (!is_own(ray, s.centre, s.t, s.side)) visibility = behind(visibility, coverage_of(s), s.share);
     return visibility > OPAQUE_TRANSMITTANCE;
+}
+
+#if HAS_CONSTANT
+bool visit_constant(Ray entered, ConstantRun run) {
+#if HAS_COLOR
+    const float coverage = run.mean.a;
+#else
+    const float coverage = run.mean.r;
+#endif
+    const float side = float(cell_side(run.voxel_shift));
+    for (int voxel = 0; voxel < run.voxels && visibility > OPAQUE_TRANSMITTANCE; ++voxel) {
+        const float t_in = entered.t;
+        const vec3 centre = vec3(cell_low(entered.voxel, run.voxel_shift)) + 0.5 * side;
+        const bool goes_on = step_over(entered, run.voxel_shift);
+        if (!is_own(entered, centre, 0.5 * (t_in + entered.t), side)) visibility = behind(visibility, coverage, 1.0);
+        if (!goes_on) break;
+    }
+    return visibility > OPAQUE_TRANSMITTANCE;
+}
+#endif
+
+// Distance behind which nothing stands between the receiver and a directional light.
+float end_of_occluders(vec3 to_light) {
+    if (view.size_shadow.w == 0) return 1e30;
+    const vec2 place = vec2(dot(receiver, view.shadow_across.xyz) + view.shadow_across.w,
+                            dot(receiver, view.shadow_down.xyz) + view.shadow_down.w);
+    const ivec2 texel = clamp(ivec2(floor(place)), 0, SHADOW_ENDS_SIDE - 1);
+    return texelFetch(shadow_ends, texel.y * SHADOW_ENDS_SIDE + texel.x).r - dot(receiver, to_light);
 }
 
 // Side of the voxels that a cone of this width is shown with (see march()).
 float voxel_side(float width) {
-    int own_shift = ROOT_SHIFT - M_SHIFT;
-    for (int level = 0; level < MAX_LEVEL && float(cell_side(own_shift)) > width; ++level) own_shift -= N_SHIFT;
-    return float(cell_side(own_shift + mip_for(own_shift, width)));
+    float side = float(ROOT_SIDE / BRICK_M);
+    int level = 0;
+    for (; level < MAX_LEVEL && side > width; ++level) side /= float(TREE_N);
+#if BLENDED
+    const int own_shift = ROOT_SHIFT - M_SHIFT - N_SHIFT * level;
+    side = float(cell_side(own_shift + blended_mip(own_shift, width)));
+#endif
+    return side;
 }
 
 void main() {
@@ -52,12 +115,27 @@ void main() {
     const uint index = lists[list_in + i];
     const ivec2 pixel = ivec2(int(index) % view.size_shadow.x, int(index) / view.size_shadow.x);
     RayState state = rays[index];
+    const bool starts = all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)));
+#if WINDOWS
+    seen_window = starts ? int(state.voxel_t_weight.z) : stored_seen_window(state);
+#endif
 
     const PixelRay seen = pixel_ray(pixel);
-    const float width = view.eye.w * (seen.skipped + state.normal_depth.w);
-    const float side = voxel_side(width);
-    receiver = seen.origin + seen.direction * state.normal_depth.w;
+    float depth = state.normal_depth.w;
     receiver_normal = facing_normal(state, seen.direction);
+#ifdef WITH_MESHES
+    // A pixel may have two receivers: first its voxels, then the mesh behind them.
+    const MeshPixel mesh = mesh_pixel(pixel);
+    const float light_on_voxels_before = uintBitsToFloat(image_rgba8[index]);
+    const bool at_mesh = light_on_voxels_before >= 0.0;
+    if (at_mesh) {
+        depth = mesh.t;
+        receiver_normal = mesh.plane;
+    }
+#endif
+    const float width = view.background.w * view.eye.w * (seen.skipped + depth);
+    const float side = voxel_side(width);
+    receiver = seen.origin + seen.direction * depth;
     const vec3 to_light = direction_to_light(receiver);
     // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
     // at a low angle stays among them for longer.
@@ -65,15 +143,25 @@ void main() {
     own_side = side;
     own_height = OWN_HEIGHT * side;
     own_reach = own_reach_of(side);
+#ifdef WITH_MESHES
+    if (at_mesh) {  // whose place is known exactly
+        own_height = mesh_own_height * side;
+        if (mesh_own_height == 0.0) own_reach = 0.0;
+    }
+#endif
 
-    const float reach = view.light.w > 0.5 ? distance(view.light.xyz, receiver) : 1e30;
+    const vec4 light = light_there();
+    const float reach = light.w > 0.5 ? distance(light.xyz, receiver) : end_of_occluders(to_light);
     Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
+#if WINDOWS
+    ray.window = seen_window;
+#endif
     bool inside = true;
-    if (all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)))) {
+    if (starts) {
         visibility = 1.0;
         // Until here all voxels are its own: those that are not lie at least half a diagonal under their centres.
-        ray.t = min(0.88 * side / receiver_rise, own_reach);
-        inside = enter_root(ray);
+        ray.t = min(max(own_height - 0.87 * side, 0.0) / receiver_rise, own_reach);
+        inside = enter_windows(ray);
     } else {
         load_position(ray, state);
         visibility = uintBitsToFloat(state.voxel_t_weight.w);
@@ -86,5 +174,18 @@ void main() {
         lists[list_out + atomicAdd(counters.waiting_shadow, 1u)] = index;
         return;
     }
-    write_pixel(pixel, state, visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0);
+    const float light_found = visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
+#ifdef WITH_MESHES
+    if (!at_mesh && mesh_needs_shadow_ray(mesh, seen, state.color.a)) {
+        image_rgba8[index] = floatBitsToUint(light_found);
+        state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
+        rays[index] = state;
+        lists[list_out + atomicAdd(counters.waiting_shadow, 1u)] = index;
+        atomicAdd(counters.paused, 1u);
+        return;
+    }
+    write_pixel(pixel, state, at_mesh ? light_on_voxels_before : light_found, mesh, at_mesh ? light_found : 1.0);
+#else
+    write_pixel(pixel, state, light_found);
+#endif
 }

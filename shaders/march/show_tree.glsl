@@ -5,9 +5,12 @@ vec3 level_color(float level) {
     return 0.5 + 0.5 * cos(LEVEL_HUE * level + phase);
 }
 
+int first_level = 0;  // of the cube that descents start from
+
 // The tree level whose bricks have voxels of that size; mips lie between two levels.
 float level_of(Sample s) {
-    return float(ROOT_SHIFT - M_SHIFT - findMSB(uint(s.side))) / float(N_SHIFT);
+    const int shift = int(round(log2(s.side) / log2(float(CELL_BASE))));
+    return float(first_level) + float(ROOT_SHIFT - M_SHIFT - shift) / float(N_SHIFT);
 }
 
 // Is the sample near where the surface leaves its brick? A side that the surface runs along does not count: it would be

@@ -1,5 +1,5 @@
 // Through the empty cells of a brick, by its masks.
-// Which block of 4^3 voxels is empty: -1 when block c is not, else log2 of an empty aligned cell's side, in blocks.
+// Which block of voxels is empty: -1 when block c is not, else log2 of an empty aligned cell's side, in blocks.
 int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 #if BLOCKS_A_SIDE == 4
     return empty_shift_4(summary, c);
@@ -19,19 +19,26 @@ int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 // Skips the empty cells of a brick.
 int skim(inout Ray ray, Place place, inout int turns) {
     const int own_shift = own_shift_of(place);
-    const int mip = place.mip + BLENDED;
+#if BLENDED
+    const int mip = place.mip + 1;
+#else
+    const int mip = 0;
+#endif
     const int blocks = MIP_BLOCKS_A_SIDE(mip);
     const ivec3 tile = cell_of(ray.voxel, place.tile_shift);
     const int first_mask = place.slot * MASK_WORDS_A_SLOT + first_mask_of(mip);
     // A straight line crosses at most 3 M - 2 cells of a brick.
     for (int cell = 0; cell < 3 * BRICK_M; ++cell) {
         ++turns;
-        const ivec3 place_of_block = place_in(ray.voxel, own_shift + BLOCK_SHIFT, M_SHIFT - BLOCK_SHIFT);
-        int empty = empty_block_shift(place.slot, place.summary, place_of_block);
+        ivec3 b = place_in(ray.voxel, own_shift, M_SHIFT);
+        ivec3 c = cell_of(b, BLOCK_SHIFT);
+        int empty = empty_block_shift(place.slot, place.summary, c);
         int shift = own_shift + BLOCK_SHIFT + empty;
         if (empty < 0) {
-            const ivec3 b = place_in(ray.voxel, own_shift + mip, M_SHIFT - mip);
-            const ivec3 c = cell_of(b, BLOCK_SHIFT);
+#if BLENDED
+            b = cell_of(b, mip);
+            c = cell_of(b, BLOCK_SHIFT);
+#endif
             const uvec2 mask = texelFetch(brick_masks, first_mask + c.x + blocks * (c.y + blocks * c.z)).xy;
             empty = empty_voxel_shift(mask, b - cell_low(b, BLOCK_SHIFT));
             if (empty < 0) return SKIM_OCCUPIED;
@@ -40,7 +47,7 @@ int skim(inout Ray ray, Place place, inout int turns) {
         if (!step_over(ray, shift)) return SKIM_ENDED;
         if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) return SKIM_LEFT;
 #if BLENDED
-        if (needs_coarser(place, width_at(ray))) return SKIM_LEFT;  // what is empty here may not be so there
+        if (needs_coarser(ray, place)) return SKIM_LEFT;  // what is empty here may not be so there
 #endif
     }
     return SKIM_LEFT;

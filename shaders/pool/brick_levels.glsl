@@ -1,6 +1,9 @@
 // The mip levels of a brick, and where they lie in the pool (renderer/pool/brick_pool.h): mip k holds the brick's region at
 // voxels 2^k times larger, with a border of one of them.
-// Needs the defines BRICK_M and BRICK_MIPS (levels beyond mip 0; at most 3).
+// Needs the defines BRICK_M and, where there are any, BRICK_MIPS (levels beyond mip 0; at most 3).
+#ifndef BRICK_MIPS
+#define BRICK_MIPS 0
+#endif
 #define CUBE(n) ((n) * (n) * (n))
 
 // Voxels a side, border not counted.

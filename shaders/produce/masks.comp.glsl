@@ -1,6 +1,7 @@
-// One thread is one block of 4^3 voxels of a mip of a new brick: it packs their occupancy into the 64-bit mask that rays skip
+// One thread is one block of voxels of a mip of a new brick: it packs their occupancy into the 64-bit mask that rays skip
 // by. One dispatch a mip, finest first: a voxel counts when a finer one in it does, which the alpha mask's samples alone
 // would not always say.
+// defines: BRICK_M=27 HAS_COLOR=1 HAS_MASK=1
 // defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1
 // defines: BRICK_M=16 BRICK_MIPS=0 HAS_COLOR=1 HAS_MASK=0
 // defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=1
@@ -14,7 +15,7 @@ layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[
 uniform uint tile_count;
 uniform int mip;
 
-#if HAS_MASK
+#if HAS_MASK && BRICK_MIPS > 0
 // Is one of the 2^3 voxels of the next finer mip in voxel v occupied?
 bool any_finer(uint slot, ivec3 v) {
     const int blocks = MIP_BLOCKS_A_SIDE(mip - 1);
@@ -33,9 +34,9 @@ void main() {
     const uint tile = i / blocks;
     const int block = int(i % blocks);
     const int blocks_a_side = MIP_BLOCKS_A_SIDE(mip);
-    const ivec3 low = 4 * ivec3(block % blocks_a_side, block / blocks_a_side % blocks_a_side,
-                                block / (blocks_a_side * blocks_a_side));
-    const int side = min(4, MIP_M(mip));
+    const ivec3 low = BLOCK_SIDE * ivec3(block % blocks_a_side, block / blocks_a_side % blocks_a_side,
+                                         block / (blocks_a_side * blocks_a_side));
+    const int side = min(BLOCK_SIDE, MIP_M(mip));
     const uint slot = uint(tiles[tile].slot.x);
     uvec2 mask = uvec2(0u);
     for (int z = 0; z < side; ++z) {
@@ -43,12 +44,13 @@ void main() {
             for (int x = 0; x < side; ++x) {
                 const uint voxel = scratch_voxel(tile, mip, low + ivec3(x, y, z) + 1);
                 bool occupied = (scratch[2u * voxel] | scratch[2u * voxel + 1u]) != 0u;
-#if HAS_MASK
+#if HAS_MASK && BRICK_MIPS > 0
                 if (mip > 0 && !occupied) occupied = any_finer(slot, low + ivec3(x, y, z));
 #endif
                 const uint bit = occupied ? 1u : 0u;
-                if (z < 2) mask.x |= bit << (x + 4 * y + 16 * z);
-                else mask.y |= bit << (x + 4 * y + 16 * (z - 2));
+                const int place = x + BLOCK_SIDE * (y + BLOCK_SIDE * z);
+                if (place < 32) mask.x |= bit << place;
+                else mask.y |= bit << (place - 32);
             }
         }
     }

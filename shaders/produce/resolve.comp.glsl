@@ -2,6 +2,7 @@
 // leaves the scratch empty for the next batch.
 // defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1
 // defines: BRICK_M=8 BRICK_MIPS=0 HAS_COLOR=0
+// defines: BRICK_M=27 HAS_COLOR=1
 #include "produce/scratch.glsl"
 
 layout(local_size_x = 64) in;

@@ -3,7 +3,14 @@
 // defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1
 // defines: BRICK_M=16 BRICK_MIPS=0 HAS_COLOR=1 HAS_MASK=0
 // defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=0
+// defines: BRICK_M=27 HAS_COLOR=1 HAS_MASK=1
 #include "produce/scratch.glsl"
+#if BRICK_M % 3 == 0
+#define ANY_VOXEL_SIDE 1
+#define FINER(size) ((size) / 4)
+#else
+#define FINER(size) ((size) - 2)
+#endif
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_attributes.glsl"
@@ -73,7 +80,7 @@ uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v) {
 #if HAS_MASK
         if ((s.material.flags >> MATERIAL_MASK_BIT & 1u) != 0u) {
             for (int x = 0; x < 4; ++x) {
-                const vec3 centre = (vec3(4 * v.x + x, row) + 0.5) * float(1 << fine.shift);
+                const vec3 centre = (vec3(4 * v.x + x, row) + 0.5) * float(side_of(fine));
                 if (alpha_at(point_under(s, centre), s.material) < s.material.alpha_cutoff) bits &= ~(1u << x);
             }
         }
@@ -109,7 +116,7 @@ void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
     if (atomicAdd(scratch[sums + SUM_WEIGHT], uint(count)) > WEIGHT_LIMIT) return;
 
     const float weight = float(count);
-    const SurfacePoint p = point_under(s, (vec3(v) + middle_of(mask, weight)) * float(4 << fine.shift));
+    const SurfacePoint p = point_under(s, (vec3(v) + middle_of(mask, weight)) * float(4 * side_of(fine)));
     // Two's complement: negative sums wrap and come out right.
     const ivec3 n = ivec3(round(normal_at(p, s.normal) * weight * NORMAL_UNIT));
     atomicAdd(scratch[sums + SUM_NORMAL], uint(n.x));
@@ -132,17 +139,17 @@ void main() {
     const ivec2 first_row = ivec2(pairs[i].rows & 0xFFu, pairs[i].rows >> 16 & 0xFFu);
     const ivec2 row_count = ivec2(pairs[i].rows >> 8 & 0xFFu, pairs[i].rows >> 24);
     const BrickTile tile = tiles[tile_index];
-    const int shift = tile.low_shift.w + mip;
+    const int size = tile.low_size.w + mip;  // mips are of powers of two alone
 
     const uvec4 corners = surface_triangles[triangle].vertices_material;
     const ivec3 a = surface_position(corners.x);
     const ivec3 b = surface_position(corners.y);
     const ivec3 c = surface_position(corners.z);
-    const ExactTriangle coarse = exact_triangle(a, b, c, shift);
-    const ExactTriangle fine = exact_triangle(a, b, c, shift - 2);
+    const ExactTriangle coarse = exact_triangle(a, b, c, size);
+    const ExactTriangle fine = exact_triangle(a, b, c, FINER(size));
     const Patch s = make_patch(corners.xyz, surface_materials[corners.w], a, b, c);
 
-    const ivec3 region_low = (tile.low_shift.xyz >> mip) - 1;
+    const ivec3 region_low = (tile.low_size.xyz >> mip) - 1;
     const ivec3 low = max(coarse.low, region_low + ivec3(0, first_row));
     const ivec3 high = min(coarse.high, region_low + ivec3(MIP_SIDE(mip) - 1, first_row + row_count - 1));
     if (any(greaterThan(low, high))) return;

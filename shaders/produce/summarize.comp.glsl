@@ -1,7 +1,10 @@
-// One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied.
-// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1
-// defines: BRICK_M=16 BRICK_MIPS=0 HAS_COLOR=1 HAS_MASK=0
-// defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=1
+// One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With TELL_EMPTY,
+// where the oracle is not exact, it also tells whether there is anything in the tile at all.
+// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1 TELL_EMPTY=1
+// defines: BRICK_M=16 HAS_COLOR=1 HAS_MASK=0 TELL_EMPTY=0
+// defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=0 TELL_EMPTY=0
+// defines: BRICK_M=8 BRICK_MIPS=3 HAS_COLOR=0 HAS_MASK=0 TELL_EMPTY=0
+// defines: BRICK_M=81 HAS_COLOR=0 HAS_MASK=0 TELL_EMPTY=1
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
 
@@ -9,13 +12,17 @@ layout(local_size_x = 64) in;
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
 
+#if TELL_EMPTY
+layout(std430, binding = SSBO_BRICK_FOUND) buffer FoundBlock { uint found[]; };
+#endif
+
 uniform uint tile_count;
 
-// Without alpha masks the finest mip tells of all.
+// Without alpha masks the finest mip tells of all whose voxels are no larger than a block.
 bool is_full(uint first, uint block) {
     const uvec2 mask = brick_masks[first + uint(SUMMARY_WORDS) + block];
     bool full = (mask.x | mask.y) != 0u;
-#if HAS_MASK && BRICK_MIPS > 0
+#if BRICK_MIPS > 2 || HAS_MASK && BRICK_MIPS > 0
     // Every mip's voxels lie in occupied ones of the coarsest.
     const int b = int(block);
     const ivec3 place = ivec3(b % BLOCKS_A_SIDE, b / BLOCKS_A_SIDE % BLOCKS_A_SIDE, b / (BLOCKS_A_SIDE * BLOCKS_A_SIDE));
@@ -48,4 +55,7 @@ void main() {
         else summary.y |= full << (bit - 32u);
     }
     brick_masks[first + word] = summary;
+#if TELL_EMPTY
+    if ((summary.x | summary.y) != 0u) atomicOr(found[i / uint(SUMMARY_WORDS)], 1u);
+#endif
 }

@@ -16,12 +16,16 @@
 // Voxels are numbered in the whole root cube: voxel i spans [i, i + 1] * 2^shift. Boxes and triangles are closed:
 // contact counts. Segments and points are triangles too.
 //
+// With the define ANY_VOXEL_SIDE, `shift` is instead the voxel's side in lattice units: even, at most 2^24 (trees whose N
+// is no power of two). Not for the functions that step through rows.
+//
 // Separating axes: Akenine-Möller 2001. Each axis that has an x bounds x from one side by a linear function of the row,
 // the others accept or reject the row (Schwarz and Seidel 2010, section 3). A projection of no area is replaced by its
 // longest side, there and back, so that both sides of its axis are tested.
 //
-// Two tiers. The filter works in float, in voxels from the corner t.low, where vertices are exact; u = 2^-24 is the
-// unit of rounding. Every bound is known to +-error, and where the whole voxels within that error differ, the row is in
+// Two tiers. The filter works in float, from the corner t.low, in units in which vertices and planes are exact: voxels
+// (lattice units with ANY_VOXEL_SIDE: all planes within the box are even numbers under 2^25). u = 2^-24 is the unit of
+// rounding. Every bound is known to +-error, and where the whole voxels within that error differ, the row is in
 // doubt. Then the exact tier decides in double: each product and sum below is a whole number of at most 2^53 and thus
 // exact, fused or not. Edges are under 2^25.6, distances under 2^26, and a component of the normal is at most 9 * 2^48,
 // because twice the area of a triangle is at most that of its bounding box.
@@ -29,6 +33,10 @@
 const float FAR_AWAY = 1.0e30;
 const float SIDE_ERROR = 1.9073486328125e-6;    // 2^-19
 const double SPLIT = 67108864.0LF;              // 2^26
+
+#ifndef ANY_VOXEL_SIDE
+#define ANY_VOXEL_SIDE 0
+#endif
 
 // The three sides of a projection with an x, as bounds of x: at rows [r, r + 1] the bound nearest to the triangle's
 // outside is x - slope * (r - row).
@@ -40,7 +48,11 @@ struct SideBounds {
 struct ExactTriangle {
     ivec3 a, b, c;
     ivec3 low, high;
+#if ANY_VOXEL_SIDE
+    int side;
+#else
     int shift;
+#endif
     dvec3 normal;       // (b - a) x (c - a)
 
     bool filtered;      // no: it is too wide for floats, and every row is in doubt
@@ -52,6 +64,38 @@ struct ExactTriangle {
     float plane_error;
     bool has_plane;     // no: the plane is parallel to x
 };
+
+// A voxel's side and its low planes, in lattice units; the voxel that a coordinate lies in.
+#if ANY_VOXEL_SIDE
+int side_of(ExactTriangle t) { return t.side; }
+int plane_of(ExactTriangle t, int voxel) { return voxel * t.side; }
+ivec2 plane_of(ExactTriangle t, ivec2 voxel) { return voxel * t.side; }
+ivec3 plane_of(ExactTriangle t, ivec3 voxel) { return voxel * t.side; }
+ivec3 voxel_at(ExactTriangle t, ivec3 place) {
+    const int across = (1 << 24) / t.side + 1;  // quotients of negative numbers are not defined
+    return (place + across * t.side) / t.side - across;
+}
+#else
+int side_of(ExactTriangle t) { return 1 << t.shift; }
+int plane_of(ExactTriangle t, int voxel) { return voxel << t.shift; }
+ivec2 plane_of(ExactTriangle t, ivec2 voxel) { return voxel << t.shift; }
+ivec3 plane_of(ExactTriangle t, ivec3 voxel) { return voxel << t.shift; }
+ivec3 voxel_at(ExactTriangle t, ivec3 place) { return place >> t.shift; }
+#endif
+
+// The filter's units: of a lattice unit, of a voxel; and from them to voxels.
+#if ANY_VOXEL_SIDE
+float lattice_unit(ExactTriangle t) { return 1.0; }
+float voxel_unit(ExactTriangle t) { return float(t.side); }
+vec2 in_voxels(ExactTriangle t, vec2 x) { return x / float(t.side); }
+// A quotient rounds by as much as 5 u more, of values under the reach that the error is taken of.
+#define PLANE_ERROR (0.75 * SIDE_ERROR)
+#else
+float lattice_unit(ExactTriangle t) { return 1.0 / float(1 << t.shift); }
+float voxel_unit(ExactTriangle t) { return 1.0; }
+vec2 in_voxels(ExactTriangle t, vec2 x) { return x; }
+#define PLANE_ERROR (0.5 * SIDE_ERROR)
+#endif
 
 // Orders a projected triangle counter-clockwise: (-edge.y, edge.x) then points inwards. Of one without area, the
 // longest side there and back is left.
@@ -75,7 +119,7 @@ void wind(inout ivec2 a, inout ivec2 b, inout ivec2 c, double twice_area) {
 // ---- The filter ----------------------------------------------------------------------------------------------------
 
 // Sides of a projection, counter-clockwise: edges a to b, b to c, c to a; one component of all three at a time.
-SideBounds side_bounds(vec3 x, vec3 row, vec3 next_x, vec3 next_row) {
+SideBounds side_bounds(vec3 x, vec3 row, vec3 next_x, vec3 next_row, float voxel) {
     SideBounds s;
     const vec3 inward_x = row - next_row;
     const vec3 inward_row = next_x - x;
@@ -84,7 +128,7 @@ SideBounds side_bounds(vec3 x, vec3 row, vec3 next_x, vec3 next_row) {
     // The row's edge that is furthest inwards is r + 1 where the side faces up.
     s.slope = inward_row / mix(inward_x, vec3(1.0), equal(inward_x, vec3(0.0)));
     s.x = x;
-    s.row = row - vec3(greaterThan(inward_row, vec3(0.0)));
+    s.row = row - voxel * vec3(greaterThan(inward_row, vec3(0.0)));
     return s;
 }
 
@@ -96,8 +140,8 @@ void prepare_sides(inout ExactTriangle t, vec3 y, vec3 z, vec3 next_y, vec3 next
     const vec3 reach = abs(t.side_y) * size.x + abs(t.side_z) * size.y;
     const bvec3 empty = equal(reach, vec3(0.0));
     const vec3 scale = 1.0 / mix(reach, vec3(1.0), empty);
-    const vec3 nearest_y = y - vec3(greaterThan(t.side_y, vec3(0.0)));
-    const vec3 nearest_z = z - vec3(greaterThan(t.side_z, vec3(0.0)));
+    const vec3 nearest_y = y - voxel_unit(t) * vec3(greaterThan(t.side_y, vec3(0.0)));
+    const vec3 nearest_z = z - voxel_unit(t) * vec3(greaterThan(t.side_z, vec3(0.0)));
     t.side_offset = mix(-(t.side_y * nearest_y + t.side_z * nearest_z) * scale, vec3(1.0), empty);
     t.side_y *= scale;
     t.side_z *= scale;
@@ -107,39 +151,40 @@ void prepare_plane(inout ExactTriangle t, vec3 a, vec3 size) {
     t.has_plane = t.normal.x != 0.0LF;
     const double divisor = t.has_plane ? t.normal.x : 1.0LF;
     const vec2 slope = vec2(t.normal.yz / divisor);
-    const vec2 nearest = a.yz - vec2(greaterThan(slope, vec2(0.0)));
+    const vec2 nearest = a.yz - voxel_unit(t) * vec2(greaterThan(slope, vec2(0.0)));
     t.plane = vec3(-slope, a.x + slope.x * nearest.x + slope.y * nearest.y);
-    t.plane_width = abs(slope.x) + abs(slope.y);
+    t.plane_width = voxel_unit(t) * (abs(slope.x) + abs(slope.y));
     // Terms and partial sums are within twice this reach; at most eight roundings meet: 16 u.
-    t.plane_error = 0.5 * SIDE_ERROR * (size.x + abs(slope.x) * size.y + abs(slope.y) * size.z);
+    t.plane_error = PLANE_ERROR * (size.x + abs(slope.x) * size.y + abs(slope.y) * size.z);
 }
 
 void prepare_filter(inout ExactTriangle t) {
-    const ivec3 corner = t.low << t.shift;
+    const ivec3 corner = plane_of(t, t.low);
     const ivec3 furthest = max(max(t.a, t.b), t.c) - corner;
     t.filtered = max(max(furthest.x, furthest.y), furthest.z) <= 1 << 24;
 
-    const float unit = 1.0 / float(1 << t.shift);
-    const vec3 size = vec3(t.high - t.low + 1);
+    const float unit = lattice_unit(t);
+    const float voxel = voxel_unit(t);
+    const vec3 size = voxel * vec3(t.high - t.low + 1);
     ivec2 a = t.a.yz - corner.yz, b = t.b.yz - corner.yz, c = t.c.yz - corner.yz;
     wind(a, b, c, t.normal.x);
     vec3 u = vec3(a.x, b.x, c.x) * unit, v = vec3(a.y, b.y, c.y) * unit;
-    prepare_sides(t, u, v, u.yzx, v.yzx, size.yz + 1.0);
+    prepare_sides(t, u, v, u.yzx, v.yzx, size.yz + voxel);
 
     a = t.a.xy - corner.xy, b = t.b.xy - corner.xy, c = t.c.xy - corner.xy;
     wind(a, b, c, t.normal.z);
     u = vec3(a.x, b.x, c.x) * unit, v = vec3(a.y, b.y, c.y) * unit;
-    t.xy = side_bounds(u, v, u.yzx, v.yzx);
+    t.xy = side_bounds(u, v, u.yzx, v.yzx, voxel);
 
     a = t.a.xz - corner.xz, b = t.b.xz - corner.xz, c = t.c.xz - corner.xz;
     wind(a, b, c, -t.normal.y);
     u = vec3(a.x, b.x, c.x) * unit, v = vec3(a.y, b.y, c.y) * unit;
-    t.xz = side_bounds(u, v, u.yzx, v.yzx);
+    t.xz = side_bounds(u, v, u.yzx, v.yzx, voxel);
     // A bound within three sizes of the box is a vertex's x, plus a product of at most four sizes that has met eight
-    // roundings: 35 u. What is further out stays out.
+    // roundings: 35 u; from units to voxels, 15 u more. What is further out stays out.
     t.side_bounds_error = 2.0 * SIDE_ERROR * size.x;
 
-    prepare_plane(t, vec3(t.a - corner) * unit, size + 1.0);
+    prepare_plane(t, vec3(t.a - corner) * unit, size + voxel);
 }
 
 vec2 bounds_at(SideBounds s, float row) {
@@ -157,10 +202,11 @@ struct RowSlice {
 };
 
 RowSlice row_slice(ExactTriangle t, int z) {
-    const float r = float(z - t.low.z);
+    const float r = float(z - t.low.z) * voxel_unit(t);
     return RowSlice(t.side_z * r + t.side_offset, bounds_at(t.xz, r), t.plane.y * r + t.plane.z);
 }
 
+#if !ANY_VOXEL_SIDE
 // Whole r, first and last, that may have slope * r + rest >= -SIDE_ERROR for all three sides; of `filtered` triangles.
 vec2 rows_inside_sides(vec3 slope, vec3 rest) {
     // As much again, and more, for the roundings here.
@@ -178,10 +224,11 @@ ivec2 rows_of_slice(ExactTriangle t, RowSlice slice) {
     const float last = float(t.high.y - t.low.y);
     return t.low.y + ivec2(clamp(rows.x, 0.0, last + 1.0), clamp(rows.y, -1.0, last));
 }
+#endif
 
 // The span of row (y, z of the slice), or doubt about it.
 ivec2 filtered_row_span(ExactTriangle t, RowSlice slice, int y, out bool in_doubt) {
-    const float r = float(y - t.low.y);
+    const float r = float(y - t.low.y) * voxel_unit(t);
     const vec3 sides = t.side_y * r + slice.side;
     const float side = min(min(sides.x, sides.y), sides.z);
 
@@ -189,10 +236,10 @@ ivec2 filtered_row_span(ExactTriangle t, RowSlice slice, int y, out bool in_doub
     const vec2 bounds = vec2(max(xy.x, slice.xz.x), min(xy.y, slice.xz.y));
     const float plane_low = t.has_plane ? t.plane.x * r + slice.plane : -FAR_AWAY;
     const float plane_high = t.has_plane ? plane_low + t.plane_width : FAR_AWAY;
-    const vec2 widest = vec2(max(bounds.x - t.side_bounds_error, plane_low - t.plane_error),
-                             min(bounds.y + t.side_bounds_error, plane_high + t.plane_error));
-    const vec2 narrowest = vec2(max(bounds.x + t.side_bounds_error, plane_low + t.plane_error),
-                                min(bounds.y - t.side_bounds_error, plane_high - t.plane_error));
+    const vec2 widest = in_voxels(t, vec2(max(bounds.x - t.side_bounds_error, plane_low - t.plane_error),
+                                          min(bounds.y + t.side_bounds_error, plane_high + t.plane_error)));
+    const vec2 narrowest = in_voxels(t, vec2(max(bounds.x + t.side_bounds_error, plane_low + t.plane_error),
+                                             min(bounds.y - t.side_bounds_error, plane_high - t.plane_error)));
     // Closed voxel i touches [x, ...) from i = ceil(x) - 1 on.
     const float last = float(t.high.x - t.low.x);
     const vec2 least = vec2(0.0, -1.0), most = vec2(last + 1.0, last);
@@ -220,13 +267,13 @@ bool meets_side(ivec2 p, ivec2 q, ivec2 row_low, int voxel_side) {
 void narrow_by_side(inout ivec2 span, ExactTriangle t, ivec2 p, ivec2 q, int row_low) {
     const ivec2 inward = ivec2(p.y - q.y, q.x - p.x);
     if (inward.x == 0) return;
-    const int innermost = row_low + (inward.y > 0 ? 1 << t.shift : 0);
+    const int innermost = row_low + (inward.y > 0 ? side_of(t) : 0);
     const double slope = double(inward.x);
     const double rest = double(inward.y) * double(innermost - p.y);
     // The voxel plane nearest to the bound: on which side of it the bound lies is then decided exactly.
-    const double bound = (double(p.x) - rest / slope) / double(1 << t.shift);
+    const double bound = (double(p.x) - rest / slope) / double(side_of(t));
     const int nearest = int(round(clamp(bound, double(t.low.x), double(t.high.x + 1))));
-    const bool inside = slope * double((nearest << t.shift) - p.x) + rest >= 0.0LF;
+    const bool inside = slope * double(plane_of(t, nearest) - p.x) + rest >= 0.0LF;
     if (inward.x > 0) span.x = max(span.x, inside ? nearest - 1 : nearest);
     else span.y = min(span.y, inside ? nearest : nearest - 1);
 }
@@ -238,7 +285,7 @@ void narrow_by_plane(inout ivec2 span, ExactTriangle t, ivec2 row_low) {
     const dvec3 normal = t.normal.x > 0.0LF ? t.normal : -t.normal;
     const dvec3 high = round(normal / SPLIT);
     const dvec3 low = normal - high * SPLIT;
-    const int side = 1 << t.shift;
+    const int side = side_of(t);
     for (int end = 0; end < 2; ++end) {
         // Lower end: the voxels whose upper corner is not under the plane; upper end: whose lower corner is not above.
         const bvec2 far_edge = end == 0 ? greaterThan(normal.yz, dvec2(0.0LF)) : lessThan(normal.yz, dvec2(0.0LF));
@@ -247,7 +294,7 @@ void narrow_by_plane(inout ivec2 span, ExactTriangle t, ivec2 row_low) {
         const double rest_low = low.y * d.x + low.z * d.y;
         const double bound = (double(t.a.x) - (rest_high * SPLIT + rest_low) / normal.x) / double(side);
         const int nearest = int(round(clamp(bound, double(t.low.x), double(t.high.x + 1))));
-        const double x = double((nearest << t.shift) - t.a.x);
+        const double x = double(plane_of(t, nearest) - t.a.x);
         // Compared, not added: the sum of these two would be rounded.
         const double value_high = (high.x * x + rest_high) * SPLIT;
         const double value_low = -(low.x * x + rest_low);
@@ -257,10 +304,10 @@ void narrow_by_plane(inout ivec2 span, ExactTriangle t, ivec2 row_low) {
 }
 
 ivec2 exact_row_span(ExactTriangle t, ivec2 row) {
-    const ivec2 row_low = row << t.shift;
+    const ivec2 row_low = plane_of(t, row);
     ivec2 a = t.a.yz, b = t.b.yz, c = t.c.yz;
     wind(a, b, c, t.normal.x);
-    const int side = 1 << t.shift;
+    const int side = side_of(t);
     if (!meets_side(a, b, row_low, side) || !meets_side(b, c, row_low, side) || !meets_side(c, a, row_low, side)) {
         return ivec2(1, 0);
     }
@@ -286,10 +333,14 @@ ExactTriangle exact_triangle(ivec3 a, ivec3 b, ivec3 c, int shift) {
     t.a = a;
     t.b = b;
     t.c = c;
+#if ANY_VOXEL_SIDE
+    t.side = shift;
+#else
     t.shift = shift;
+#endif
     // A voxel that ends where the triangle begins is touched too.
-    t.low = (min(min(a, b), c) - 1) >> shift;
-    t.high = max(max(a, b), c) >> shift;
+    t.low = voxel_at(t, min(min(a, b), c) - 1);
+    t.high = voxel_at(t, max(max(a, b), c));
     const dvec3 ab = dvec3(b - a), ac = dvec3(c - a);
     t.normal = dvec3(ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x);
     prepare_filter(t);

@@ -1,13 +1,6 @@
 // Base colour and normal of a surface at a point of one of its triangles.
+#include "voxelize/octahedral.glsl"
 #include "voxelize/surface_attributes.glsl"
-
-// Inverse of the octahedral map (Cigolle et al. 2014); 0 = no normal.
-vec3 decode_normal(uint packed_normal) {
-    const vec2 e = unpackSnorm2x16(packed_normal);
-    const float z = 1.0 - abs(e.x) - abs(e.y);
-    const vec2 folded = (1.0 - abs(e.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(e, vec2(0.0)));
-    return normalize(vec3(z < 0.0 ? folded : e, z));
-}
 
 vec3 linear_from_srgb(vec3 c) {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));

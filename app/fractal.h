@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "app/options.h"
+#include "app/view_options.h"
+#include "renderer/renderer.h"
+
+/// `builtin:fractal`: the built-in without triangles, which has no finest level.
+namespace cairn::app {
+
+[[nodiscard]] bool is_fractal(const SceneOptions& scene);
+
+/// `--zoom`, a power of two.
+void add_zoom_option(CLI::App& verb, int& zoom);
+
+/// As deep as trees can be.
+/// @throws Error (Fault::usage) when a resolution was given too.
+[[nodiscard]] renderer::TreeOptions fractal_tree(const ViewOptions& options);
+
+/// `--camera` and `--light` tell places from the middle of the fractal, in units of its side / 2^zoom.
+[[nodiscard]] renderer::View fractal_view(const ViewOptions& options, int zoom);
+
+}  // namespace cairn::app

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "reference/image.h"
+
+namespace cairn::reference {
+
+/// A light with an area. World units.
+struct AreaLight {
+    enum class Shape : std::uint8_t {
+        rectangle,  ///< centre +- half_u +- half_v
+        disk,       ///< the ellipse with these half axes
+        sphere,     ///< of `radius`
+    };
+    Shape shape = Shape::rectangle;
+    glm::dvec3 centre{0.0, 1.0, 0.0};
+    glm::dvec3 half_u{0.1, 0.0, 0.0};
+    glm::dvec3 half_v{0.0, 0.0, 0.1};
+    double radius = 0.1;
+};
+
+struct AreaLightOptions {
+    double standard_error = 0.005;  ///< sampling of a point stops below it
+    int least_samples = 256;        ///< of every point, however clear it looks
+    int most_samples = 65536;       ///< sampling of a point stops here in any case
+    std::uint64_t seed = 1;
+    int threads = 0;  ///< 0 = all cores; the result does not depend on it
+};
+
+struct LightVisibility {
+    double visible = 1.0;         ///< share of the light that the point sees, in [0, 1]
+    double standard_error = 0.0;  ///< of `visible`, estimated from the samples
+    int samples = 0;
+};
+
+/// What share of a light each point sees past the tracer's triangles, by stratified samples: uniform in the
+/// area of a rectangle or disk, and in the solid angle of a sphere.
+///
+/// Samples come in rounds of 8 x 8 strata, one jittered sample each; the spread of the rounds' means gives
+/// the standard error. An occluder that hides much less than 1 / least_samples of the light may be missed.
+///
+/// @param points   world.
+/// @param normals  one a point: what lies below its tangent plane is not seen; 0 = a point that has none; or
+///                 empty: no point has one.
+/// @throws Error  Fault::usage for a light without an area, a point inside a sphere light, sample counts or a
+///                standard error that are not positive, or normals of another count than points.
+[[nodiscard]] std::vector<LightVisibility> area_light_visibility(const ImageTracer& tracer,
+                                                                 std::span<const glm::dvec3> points,
+                                                                 std::span<const glm::dvec3> normals,
+                                                                 const AreaLight& light,
+                                                                 const AreaLightOptions& options = {});
+
+}  // namespace cairn::reference

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "renderer/renderer.h"
+
+namespace cairn::renderer {
+
+/// The last view's picture, as far as its rows are finished: a view that does not change is marched once.
+class KeptPicture {
+public:
+    /// Those rows, when all of them were kept for just this view; else an empty image.
+    [[nodiscard]] Image rows(const View& view, Rows rows) const;
+
+    /// Keeps finished rows; those of another view are forgotten. Pictures past the limit are not kept.
+    void keep(const View& view, Rows rows, const Image& image);
+
+    void forget();
+
+    static constexpr std::size_t limit_bytes = std::size_t(64) << 20U;
+
+private:
+    View view_;
+    Image image_;
+    std::vector<bool> finished_;  // a row each
+};
+
+}  // namespace cairn::renderer

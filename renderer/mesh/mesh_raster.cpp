@@ -1,0 +1,279 @@
+#include "renderer/mesh/mesh_raster.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "gl/buffer.h"
+#include "gl/draw_state.h"
+#include "gl/handle.h"
+#include "gl/program.h"
+#include "renderer/mesh/mesh_targets.h"
+#include "shaders/interop/bindings.h"
+#include "shaders/interop/config.h"
+#include "voxelizer/surface.h"
+
+namespace cairn::renderer {
+namespace {
+
+constexpr unsigned group_size = 64;
+
+/// Some rows of a picture, as the rays of a camera see them: what a drawing depends on.
+struct Strip {
+    glm::vec4 eye, forward, right, up;
+    glm::ivec2 picture;
+    MarchSpace space;
+    int first_row;
+    int rows;
+    bool operator==(const Strip&) const = default;
+};
+
+Strip strip_of(const interop::MarchView& view, const MarchSpace& space, int row) {
+    const glm::ivec2 picture(view.size_shadow.x, view.size_shadow.y);
+    const int most = std::max(MESH_STRIP_PIXELS / picture.x, 1);
+    const int first = row / most * most;
+    return {view.eye, view.forward, view.right, view.up,
+            picture,  space,        first,      std::min(most, picture.y - first)};
+}
+
+/// Undoes pixel_ray(): a point `p` from the moved eye is x * w * right - y * w * up + along * forward, with w
+/// = along + what the eye was moved by.
+interop::MeshView mesh_view(const Strip& strip, const voxelizer::Grid& lattice) {
+    const glm::dvec3 right(strip.right);
+    const glm::dvec3 down(-strip.up);
+    const glm::dvec3 forward(strip.forward);
+    const glm::dmat3 rows = glm::transpose(glm::inverse(glm::dmat3(right, down, forward)));
+    const double unit = lattice.lattice_unit() / strip.space.unit;
+    const glm::dvec3 origin =
+        (lattice.origin - strip.space.origin) / strip.space.unit - glm::dvec3(strip.eye);
+    const double side = unit * double(1 << LATTICE_BITS);
+    interop::MeshView out{};
+    out.place = glm::dvec4(origin, unit);
+    out.across = glm::dvec4(rows[0], 0.0);
+    out.down = glm::dvec4(rows[1], side * MESH_NEAREST_PART);
+    out.along = glm::dvec4(rows[2], double(strip.forward.w));
+    return out;
+}
+
+gl::Buffer index_buffer(const voxelizer::SurfaceChunk& chunk) {
+    std::vector<std::uint32_t> indices;
+    indices.reserve(3 * chunk.triangles.size());
+    for (const interop::SurfaceTriangle& triangle : chunk.triangles) {
+        for (int corner = 0; corner < 3; ++corner)
+            indices.push_back(triangle.vertices_material[corner]);
+    }
+    return gl::Buffer::of(std::span<const std::uint32_t>(indices), "indices of a mesh");
+}
+
+}  // namespace
+
+struct MeshRaster::Parts {
+    Parts(const voxelizer::Surface& flat, const gl::ShaderSource& source)
+        : shaders(source),
+          lattice(flat.grid),
+          triangle_count(flat.triangle_count),
+          surface(voxelizer::upload(flat)),
+          view_buffer(sizeof(interop::MarchView), "view of a mesh"),
+          mesh_view_buffer(sizeof(interop::MeshView), "place of a mesh"),
+          place_triangles(gl::build_compute(shaders, "mesh/place_triangles.comp.glsl")) {
+        std::size_t largest = 1;
+        for (const voxelizer::SurfaceChunk& chunk : flat.chunks) {
+            indices.push_back(index_buffer(chunk));
+            largest = std::max(largest, chunk.triangles.size());
+        }
+        largest = std::min<std::size_t>(largest, MESH_BATCH_TRIANGLES);
+        placed = gl::Buffer(largest * sizeof(interop::MeshTriangle), "triangles of a mesh");
+        GLuint name = 0;
+        glCreateVertexArrays(1, &name);
+        vertex_array = gl::VertexArrayHandle(name);
+        glEnableVertexArrayAttrib(name, ATTRIBUTE_POSITION);
+        glVertexArrayAttribIFormat(name, ATTRIBUTE_POSITION, 3, GL_INT, 0);
+        glVertexArrayAttribBinding(name, ATTRIBUTE_POSITION, 0);
+    }
+
+    /// The program of a fragment shader, built when it is first used.
+    const gl::Program& program(gl::Program& cached, const char* fragment) const {
+        if (cached.id() == 0) {
+            cached = gl::build_raster(shaders, "mesh/project.vert.glsl", fragment, {},
+                                      {{"MASKED", surface.has_mask ? "1" : "0"}});
+        }
+        return cached;
+    }
+
+    void begin(const Strip& strip, const MeshTargets& targets);
+    void place(std::size_t chunk, unsigned first, unsigned count);
+    void draw_all(const gl::Program& drawing);
+    void draw_nearest(const Strip& strip);
+    void draw_look(const Strip& strip);
+    void draw_span(const Strip& strip);
+
+    gl::ShaderSource shaders;
+    voxelizer::Grid lattice;
+    std::uint64_t triangle_count;
+    voxelizer::GpuSurface surface;
+    std::vector<gl::Buffer> indices;                            ///< of each chunk
+    gl::Buffer placed;                                          ///< MeshTriangle
+    std::optional<Strip> placed_strip;                          ///< whose rays `placed` is for
+    std::optional<std::pair<std::size_t, unsigned>> placed_of;  ///< chunk and first triangle
+    gl::Buffer view_buffer;
+    gl::Buffer mesh_view_buffer;
+    gl::VertexArrayHandle vertex_array;
+    gl::Program place_triangles;
+    gl::Program find_nearest, look_of_surface, find_span;
+    MeshTargets nearest, look, span;
+    std::optional<Strip> surface_strip, span_strip;  ///< what the targets hold
+};
+
+/// Sets the view and where fragments go. The viewport is the whole picture's, of which the targets hold a
+/// part.
+void MeshRaster::Parts::begin(const Strip& strip, const MeshTargets& targets) {
+    if (placed_strip != strip) placed_of.reset();
+    placed_strip = strip;
+    interop::MarchView view{};
+    view.eye = strip.eye;
+    view.forward = strip.forward;
+    view.right = strip.right;
+    view.up = strip.up;
+    view.size_shadow = glm::ivec4(strip.picture, 0, 0);
+    view.band = glm::ivec4(strip.first_row, strip.rows, 0, 0);
+    view_buffer.write(0, &view, sizeof(view));
+    const interop::MeshView placing = mesh_view(strip, lattice);
+    mesh_view_buffer.write(0, &placing, sizeof(placing));
+    view_buffer.bind_uniform(UBO_VIEW);
+    mesh_view_buffer.bind_uniform(UBO_MESH_VIEW);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.framebuffer());
+    glViewport(0, -strip.first_row, strip.picture.x, strip.picture.y);
+    glFrontFace(GL_CW);  // rows go downwards
+}
+
+/// Fills `placed` from the bound chunk. Most meshes are one batch: their second pass finds it as the first
+/// left it.
+void MeshRaster::Parts::place(std::size_t chunk, unsigned first, unsigned count) {
+    if (placed_of == std::pair(chunk, first)) return;
+    place_triangles.set("first", first);
+    place_triangles.set("count", count);
+    place_triangles.use();
+    gl::dispatch_threads(count, group_size);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    placed_of = std::pair(chunk, first);
+}
+
+void MeshRaster::Parts::draw_all(const gl::Program& drawing) {
+    glBindVertexArray(vertex_array.id());
+    placed.bind_storage(SSBO_MESH_TRIANGLES);
+    for (std::size_t chunk = 0; chunk < surface.chunks.size(); ++chunk) {
+        const voxelizer::GpuSurfaceChunk& mesh = surface.chunks[chunk];
+        surface.bind(chunk);
+        glVertexArrayVertexBuffer(vertex_array.id(), 0, mesh.positions.id(), 0, 3 * sizeof(std::int32_t));
+        glVertexArrayElementBuffer(vertex_array.id(), indices[chunk].id());
+        for (unsigned first = 0; first < mesh.triangle_count; first += MESH_BATCH_TRIANGLES) {
+            const unsigned count = std::min(mesh.triangle_count - first, unsigned(MESH_BATCH_TRIANGLES));
+            place(chunk, first, count);
+            drawing.set("first", first);
+            drawing.use();
+            glDrawElements(GL_TRIANGLES, GLsizei(3 * count), GL_UNSIGNED_INT,
+                           reinterpret_cast<const void*>(std::size_t(first) * 3 * sizeof(std::uint32_t)));
+        }
+    }
+}
+
+void MeshRaster::Parts::draw_nearest(const Strip& strip) {
+    const glm::ivec2 size(strip.picture.x, strip.rows);
+    if (nearest.size() != size) {
+        nearest = MeshTargets();  // first, so that both never exist
+        nearest = MeshTargets(size, {GL_R32F});
+    }
+    const gl::DrawStateGuard guard;
+    begin(strip, nearest);
+    constexpr std::array<float, 4> nothing = {MESH_MISS, 0.0F, 0.0F, 0.0F};
+    glClearNamedFramebufferfv(nearest.framebuffer(), GL_COLOR, 0, nothing.data());
+    glEnable(GL_BLEND);
+    glBlendEquationi(0, GL_MIN);
+    draw_all(program(find_nearest, "mesh/find_nearest.frag.glsl"));
+}
+
+void MeshRaster::Parts::draw_look(const Strip& strip) {
+    const glm::ivec2 size(strip.picture.x, strip.rows);
+    if (look.size() != size) {
+        look = MeshTargets();
+        look = MeshTargets(size, {GL_RGBA32UI});
+    }
+    const gl::DrawStateGuard guard;
+    begin(strip, look);
+    constexpr std::array<GLuint, 4> nothing{};
+    glClearNamedFramebufferuiv(look.framebuffer(), GL_COLOR, 0, nothing.data());
+    glBindTextureUnit(TEXTURE_MESH_NEAREST, nearest.texture(0));
+    draw_all(program(look_of_surface, "mesh/draw_surface.frag.glsl"));
+}
+
+void MeshRaster::Parts::draw_span(const Strip& strip) {
+    const glm::ivec2 size(strip.picture.x, strip.rows);
+    if (span.size() != size) {
+        span = MeshTargets();
+        span = MeshTargets(size, {GL_RG32F, GL_R32F});
+    }
+    const gl::DrawStateGuard guard;
+    begin(strip, span);
+    constexpr std::array<float, 4> nothing = {MESH_MISS, MESH_MISS, 0.0F, 0.0F};
+    constexpr std::array<float, 4> none{};
+    glClearNamedFramebufferfv(span.framebuffer(), GL_COLOR, 0, nothing.data());
+    glClearNamedFramebufferfv(span.framebuffer(), GL_COLOR, 1, none.data());
+    glEnable(GL_BLEND);
+    glBlendEquationi(0, GL_MIN);
+    glBlendEquationi(1, GL_FUNC_ADD);
+    glBlendFunci(1, GL_ONE, GL_ONE);
+    draw_all(program(find_span, "mesh/find_span.frag.glsl"));
+}
+
+namespace {
+
+voxelizer::Surface flatten(const scenes::Scene& scene, const scenes::Snapshot& snapshot) {
+    // Of the grid, only the lattice counts; in voxels so small, its margin is small too.
+    constexpr int resolution = 1024;
+    const voxelizer::Grid grid = voxelizer::grid_around(snapshot.bounds, resolution);
+    return voxelizer::build_surface(scene, snapshot, grid, {.attributes = true});
+}
+
+}  // namespace
+
+MeshRaster::MeshRaster(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
+                       const gl::ShaderSource& shaders)
+    : parts_(std::make_unique<Parts>(flatten(scene, snapshot), shaders)) {}
+MeshRaster::MeshRaster(MeshRaster&&) noexcept = default;
+MeshRaster& MeshRaster::operator=(MeshRaster&&) noexcept = default;
+MeshRaster::~MeshRaster() = default;
+
+MeshSurface MeshRaster::draw_surface(const interop::MarchView& view, const MarchSpace& space, int row) {
+    const Strip strip = strip_of(view, space, row);
+    if (parts_->surface_strip != strip) {
+        parts_->surface_strip.reset();
+        parts_->draw_nearest(strip);
+        parts_->draw_look(strip);
+        parts_->surface_strip = strip;
+    }
+    return {strip.first_row, strip.rows, parts_->nearest.texture(0), parts_->look.texture(0)};
+}
+
+MeshSpan MeshRaster::draw_span(const interop::MarchView& view, const MarchSpace& space, int row) {
+    const Strip strip = strip_of(view, space, row);
+    if (parts_->span_strip != strip) {
+        parts_->span_strip.reset();
+        parts_->draw_span(strip);
+        parts_->span_strip = strip;
+    }
+    return {strip.first_row, strip.rows, parts_->span.texture(0), parts_->span.texture(1)};
+}
+
+std::uint64_t MeshRaster::triangle_count() const {
+    return parts_->triangle_count;
+}
+
+std::size_t MeshRaster::size_bytes() const {
+    std::size_t sum = parts_->surface.size_bytes() + parts_->placed.size_bytes();
+    for (const gl::Buffer& buffer : parts_->indices)
+        sum += buffer.size_bytes();
+    return sum;
+}
+
+}  // namespace cairn::renderer

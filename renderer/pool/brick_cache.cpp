@@ -1,0 +1,154 @@
+#include "renderer/pool/brick_cache.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace cairn::renderer {
+namespace {
+
+/// Texels of a row are not padded while this lives; then OpenGL's default is back.
+class TightRows {
+public:
+    TightRows() { set(1); }
+    ~TightRows() { set(4); }
+    TightRows(const TightRows&) = delete;
+    TightRows& operator=(const TightRows&) = delete;
+    TightRows(TightRows&&) = delete;
+    TightRows& operator=(TightRows&&) = delete;
+
+private:
+    static void set(int bytes) {
+        glPixelStorei(GL_PACK_ALIGNMENT, bytes);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, bytes);
+    }
+};
+
+std::size_t layer_bytes(const BrickPool::Layer& layer) {
+    const auto side = std::size_t(layer.side);
+    return side * side * side * std::size_t(layer.texel_bytes);
+}
+
+/// Where the next layer, or the masks, may start.
+std::size_t aligned(std::size_t offset) {
+    return (offset + 7) / 8 * 8;
+}
+
+void* as_pointer(std::size_t offset) {
+    return reinterpret_cast<void*>(offset);
+}
+
+/// Producers write the pool as images and storage, and rays read it; transfers come after both.
+void wait_for_shaders() {
+    glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT |
+                    GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+}  // namespace
+
+BrickCache::BrickCache(const BrickPool& pool, std::size_t limit_bytes)
+    : pool_(pool), limit_bytes_(limit_bytes), layers_(pool.layers()) {
+    for (const BrickPool::Layer& layer : layers_)
+        masks_offset_ = aligned(masks_offset_ + layer_bytes(layer));
+    brick_bytes_ = masks_offset_ + pool.mask_bytes_a_slot();
+    if (limit_bytes < brick_bytes_ + record_bytes) {
+        throw Error(Fault::usage, "brick cache", fmt::format("{} bytes hold no brick", limit_bytes),
+                    fmt::format("give it at least {} bytes, or none", brick_bytes_ + record_bytes));
+    }
+    for (Reading& reading : ring_)
+        reading.buffer = gl::Buffer(brick_bytes_, "bricks read back");
+    writing_ = gl::Buffer(brick_bytes_, "bricks written again");
+}
+
+bool BrickCache::knows(const Tile& tile) const {
+    return bricks_.contains(tile) || std::any_of(ring_.begin(), ring_.end(), [&](const Reading& reading) {
+               return reading.fence && reading.tile == tile;
+           });
+}
+
+void BrickCache::store(std::span<const Tree::Evicted> evicted) {
+    if (evicted.empty()) return;
+    wait_for_shaders();
+    const TightRows tight_rows;
+    for (const Tree::Evicted& brick : evicted) {
+        if (knows(brick.tile)) continue;
+        Reading& reading = ring_[next_reading_];
+        next_reading_ = (next_reading_ + 1) % ring_.size();
+        finish(reading);
+        start_reading(reading, brick);
+        ++counters_.stored;
+    }
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+}
+
+void BrickCache::start_reading(Reading& reading, const Tree::Evicted& evicted) const {
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, reading.buffer.id());
+    std::size_t offset = 0;
+    for (const BrickPool::Layer& layer : layers_) {
+        const glm::ivec3 low = pool_.first_texel(evicted.slot, layer.mip);
+        glGetTextureSubImage(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
+                             layer.format, layer.type, GLsizei(layer_bytes(layer)), as_pointer(offset));
+        offset = aligned(offset + layer_bytes(layer));
+    }
+    const std::size_t mask_bytes = pool_.mask_bytes_a_slot();
+    glCopyNamedBufferSubData(pool_.masks().id(), reading.buffer.id(),
+                             GLintptr(std::size_t(evicted.slot) * mask_bytes), GLintptr(masks_offset_),
+                             GLsizeiptr(mask_bytes));
+    reading.tile = evicted.tile;
+    reading.fence = Fence(glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0));
+}
+
+void BrickCache::finish(Reading& reading) {
+    if (!reading.fence) return;
+    constexpr GLuint64 a_second = 1000000000;
+    GLenum state = GL_TIMEOUT_EXPIRED;
+    while (state == GL_TIMEOUT_EXPIRED)
+        state = glClientWaitSync(reading.fence.get(), GL_SYNC_FLUSH_COMMANDS_BIT, a_second);
+    reading.fence.reset();
+    if (state == GL_WAIT_FAILED) {
+        throw Error(Fault::internal, "brick cache", "the driver does not say when a brick was read back",
+                    "render without a brick cache");
+    }
+    keep(reading.tile, reading.buffer.read_all<std::uint8_t>(brick_bytes_));
+}
+
+void BrickCache::keep(const Tile& tile, std::vector<std::uint8_t> bytes) {
+    order_.push_front({tile, std::move(bytes)});
+    bricks_.emplace(tile, order_.begin());
+    while (size_bytes() > limit_bytes_) {
+        bricks_.erase(order_.back().tile);
+        order_.pop_back();
+    }
+}
+
+bool BrickCache::restore(const Tile& tile, int slot) {
+    for (Reading& reading : ring_) {
+        if (reading.fence && reading.tile == tile) finish(reading);
+    }
+    const auto found = bricks_.find(tile);
+    if (found == bricks_.end()) return false;
+    order_.splice(order_.begin(), order_, found->second);
+
+    const TightRows tight_rows;
+    writing_.write(0, order_.front().bytes.data(), brick_bytes_);
+    wait_for_shaders();
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, writing_.id());
+    std::size_t offset = 0;
+    for (const BrickPool::Layer& layer : layers_) {
+        const glm::ivec3 low = pool_.first_texel(slot, layer.mip);
+        glTextureSubImage3D(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
+                            layer.format, layer.type, as_pointer(offset));
+        offset = aligned(offset + layer_bytes(layer));
+    }
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    const std::size_t mask_bytes = pool_.mask_bytes_a_slot();
+    glCopyNamedBufferSubData(writing_.id(), pool_.masks().id(), GLintptr(masks_offset_),
+                             GLintptr(std::size_t(slot) * mask_bytes), GLsizeiptr(mask_bytes));
+    ++counters_.restored;
+    return true;
+}
+
+}  // namespace cairn::renderer

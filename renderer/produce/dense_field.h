@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "renderer/produce/volume_field.h"
+#include "scenes/volume.h"
+
+namespace cairn::renderer {
+
+/// A volume that is held whole: its samples, their means at every coarser level, and the bounds of what boxes
+/// hold.
+///
+/// The finest voxels are cubes as wide as the least of the volume's spacings, centred on its samples where
+/// the spacing is the same along all axes; along the others they are interpolated linearly. There is no finer
+/// level: rays interpolate between voxels, which is the trilinear interpolation of the samples.
+class DenseField final : public Field {
+public:
+    /// The volume is not needed afterwards.
+    /// @param n  of the tree.
+    /// @throws Error (Fault::memory) when there would be more than 2^33 voxels.
+    DenseField(const scenes::Volume& volume, int n);
+
+    [[nodiscard]] const FieldFrame& frame() const override { return frame_; }
+    void fill(int coarseness, const glm::i64vec3& low, const glm::ivec3& count, float* values) const override;
+    [[nodiscard]] FieldRange range(const glm::i64vec3& low, const glm::i64vec3& high) const override;
+
+private:
+    struct Level {
+        glm::i64vec3 size{0};
+        std::vector<std::uint16_t> means;  ///< x fastest; 65535 is density 1
+    };
+    /// Cells of the bounds, 2^shift finest voxels a side.
+    struct Bounds {
+        int shift = 0;
+        glm::i64vec3 size{0};
+        std::vector<std::array<std::uint16_t, 2>> low_high;
+    };
+    void build_bounds();
+
+    FieldFrame frame_;
+    std::vector<Level> levels_;
+    std::vector<Bounds> bounds_;
+};
+
+}  // namespace cairn::renderer

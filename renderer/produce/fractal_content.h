@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+
+#include "gl/buffer.h"
+#include "gl/program.h"
+#include "gl/shader_source.h"
+#include "renderer/produce/content.h"
+
+namespace cairn::renderer {
+
+/// A cube without one of its eight octants, and each octant that is left likewise, without end: voxel (x, y,
+/// z) of any power-of-two grid across the root cube is occupied when no bit is set in all three.
+///
+/// Around its middle the set repeats itself, exactly, at each power of two: a trial for depth without limit.
+/// The root cube is [0, 1]^3 of the world. Dimension log2(7).
+namespace fractal {
+
+/// Is the voxel, or the tile, at this position of a grid of 2^bits cubes across the root occupied?
+[[nodiscard]] inline bool occupied(const glm::i64vec3& position, int bits) {
+    const std::int64_t outside = position.x >> bits | position.y >> bits | position.z >> bits;
+    return outside == 0 && (position.x & position.y & position.z) == 0;
+}
+
+/// Bit x + 3 (y + 3 z): may voxels of the tile at (x, y, z) - 1 from this one be occupied?
+[[nodiscard]] std::uint32_t neighbour_mask(const Tile& tile, int n_shift);
+
+}  // namespace fractal
+
+class FractalOracle final : public Oracle {
+public:
+    explicit FractalOracle(const TreeShape& shape) : shape_(shape) {}
+    [[nodiscard]] glm::uvec2 child_mask(const Tile& tile) override;
+
+private:
+    TreeShape shape_;
+};
+
+/// Fills bricks from the positions of their voxels in the tile and from which neighbours the tile has, so
+/// that 32 bits are enough at any depth.
+class FractalProducer final : public Producer {
+public:
+    FractalProducer(const TreeShape& shape, const gl::ShaderSource& shaders);
+    std::vector<Produced> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+
+private:
+    TreeShape shape_;
+    gl::Program texels_;
+    gl::Program masks_;
+    gl::Buffer tiles_;
+};
+
+class FractalContent final : public Content {
+public:
+    explicit FractalContent(const TreeShape& shape, const gl::ShaderSource& shaders = {});
+
+    [[nodiscard]] Oracle& oracle() override { return oracle_; }
+    [[nodiscard]] Producer& producer() override { return producer_; }
+    [[nodiscard]] const voxelizer::Grid& grid() const override { return grid_; }
+    [[nodiscard]] bool has_color() const override { return false; }
+    [[nodiscard]] glm::vec3 uniform_color() const override { return {0.72F, 0.62F, 0.45F}; }
+
+private:
+    voxelizer::Grid grid_;
+    FractalOracle oracle_;
+    FractalProducer producer_;
+};
+
+}  // namespace cairn::renderer

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "renderer/produce/content.h"
+#include "renderer/produce/volume_field.h"
+
+namespace cairn::renderer {
+
+/// Which of the 256 densities that a brick tells apart are visible. What lies between two is visible when one
+/// is.
+using VisibleDensities = std::array<bool, 256>;
+
+/// Do densities within bounds show?
+class DensityTest {
+public:
+    explicit DensityTest(const VisibleDensities& visible);
+    /// Both bounds belong to it.
+    [[nodiscard]] bool shows(std::uint8_t low, std::uint8_t high) const {
+        return before_[high + 1U] != before_[low];
+    }
+
+private:
+    std::array<std::uint16_t, 257> before_{};  // visible densities under each
+};
+
+/// A tree's shape and the field's coarseness at its finest level.
+struct VolumeShape {
+    TreeShape tree;
+    int finest_coarseness = 0;  ///< above 0 where the resolution was limited
+
+    /// Coarseness of the voxels of a level.
+    [[nodiscard]] int coarseness(int level) const { return finest_coarseness + tree.max_level - level; }
+};
+
+/// The least tree that holds the field at its finest; cut off at `max_resolution` voxels across the root
+/// cube.
+/// @throws Error (Fault::usage) as make_tree_shape does, and when the field is made for another n.
+[[nodiscard]] VolumeShape make_volume_shape(const FieldFrame& frame, int n, int m, int max_resolution);
+
+/// Tells empty tiles by the bounds of what the field holds there, the brick's border included.
+class VolumeOracle final : public Oracle {
+public:
+    /// Refers to the field and the test, which must outlive it.
+    VolumeOracle(const VolumeShape& shape, const Field& field, const DensityTest& test);
+    [[nodiscard]] glm::uvec2 child_mask(const Tile& tile) override;
+    [[nodiscard]] bool is_empty(const Tile& tile) override;
+
+private:
+    VolumeShape shape_;
+    const Field& field_;
+    const DensityTest& test_;
+};
+
+/// Fills bricks with densities on the CPU, many at once, and uploads them through a pixel-unpack buffer. A
+/// voxel is marked in the masks when a trilinear fetch anywhere in it may be visible.
+class VolumeProducer final : public Producer {
+public:
+    /// Refers to the field and the test, which must outlive it.
+    VolumeProducer(const VolumeShape& shape, const Field& field, const DensityTest& test);
+    std::vector<Produced> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+
+private:
+    void produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool,
+                       std::vector<Produced>& produced);
+
+    VolumeShape shape_;
+    const Field& field_;
+    const DensityTest& test_;
+    std::size_t batch_;
+    std::vector<std::uint8_t> texels_;
+    std::vector<std::uint64_t> masks_;
+    gl::Buffer upload_;
+};
+
+/// A field of densities: what Crassin et al. 2008 explore.
+///
+/// What is visible is fixed here: a transfer function that shows other densities needs another content.
+class VolumeContent final : public Content {
+public:
+    VolumeContent(const VolumeShape& shape, std::shared_ptr<const Field> field,
+                  const VisibleDensities& visible);
+
+    [[nodiscard]] Oracle& oracle() override { return oracle_; }
+    [[nodiscard]] Producer& producer() override { return producer_; }
+    [[nodiscard]] const voxelizer::Grid& grid() const override { return grid_; }
+    [[nodiscard]] bool has_color() const override { return false; }
+    [[nodiscard]] Channels channels() const override { return {.color = false, .normal = false}; }
+    [[nodiscard]] glm::vec3 uniform_color() const override { return glm::vec3(1.0F); }
+    [[nodiscard]] bool has_constant() const override { return true; }
+
+private:
+    std::shared_ptr<const Field> field_;
+    DensityTest test_;
+    voxelizer::Grid grid_;
+    VolumeOracle oracle_;
+    VolumeProducer producer_;
+};
+
+}  // namespace cairn::renderer

@@ -1,0 +1,170 @@
+#include "renderer/shadow/shadow_mesh.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "shaders/interop/bindings.h"
+
+namespace cairn::renderer {
+namespace {
+
+struct Vertex {
+    glm::vec3 position{0.0F};
+    glm::vec3 normal{0.0F};    ///< 0 = none: the triangle's own
+    glm::u8vec4 color{255};    ///< linear
+    glm::vec2 texcoord{0.0F};  ///< after KHR_texture_transform
+};
+
+GLint wrap_mode(scenes::Wrap wrap) {
+    switch (wrap) {
+        case scenes::Wrap::repeat:
+            return GL_REPEAT;
+        case scenes::Wrap::mirrored_repeat:
+            return GL_MIRRORED_REPEAT;
+        case scenes::Wrap::clamp_to_edge:
+            break;
+    }
+    return GL_CLAMP_TO_EDGE;
+}
+
+gl::TextureHandle make_texture(int width, int height, const std::uint8_t* rgba, scenes::Wrap wrap_s,
+                               scenes::Wrap wrap_t) {
+    GLuint id = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &id);
+    gl::TextureHandle texture(id);
+    const int levels = std::bit_width(unsigned(std::max(width, height)));
+    glTextureStorage2D(id, levels, GL_SRGB8_ALPHA8, width, height);
+    glTextureSubImage2D(id, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    glGenerateTextureMipmap(id);
+    glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTextureParameteri(id, GL_TEXTURE_WRAP_S, wrap_mode(wrap_s));
+    glTextureParameteri(id, GL_TEXTURE_WRAP_T, wrap_mode(wrap_t));
+    return texture;
+}
+
+/// Carries normals where `m` carries points, whatever its scales, with its orientation; 0 where it flattens
+/// space.
+glm::dmat3 cofactors(const glm::dmat3& m) {
+    const glm::dmat3 c(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    return glm::dot(m[0], c[0]) < 0.0 ? -c : c;
+}
+
+void append_vertices(const scenes::Scene& scene, const scenes::Item& item, const glm::dvec3& origin,
+                     std::vector<Vertex>& vertices) {
+    const scenes::Primitive& primitive = *item.primitive;
+    const glm::dmat3 normal_from_mesh = cofactors(glm::dmat3(item.world_from_mesh));
+    const glm::mat3 uv_from_mesh = primitive.material >= 0
+                                       ? scene.materials[std::size_t(primitive.material)].uv_from_mesh
+                                       : glm::mat3(1.0F);
+    for (std::size_t i = 0; i < item.positions.size(); ++i) {
+        Vertex& vertex = vertices.emplace_back();
+        vertex.position =
+            glm::vec3(glm::dvec3(item.world_from_mesh * glm::dvec4(item.positions[i], 1.0)) - origin);
+        if (!item.normals.empty()) {
+            const glm::dvec3 normal = normal_from_mesh * glm::dvec3(item.normals[i]);
+            const double length = glm::length(normal);
+            if (std::isfinite(length) && length > 0.0) vertex.normal = glm::vec3(normal / length);
+        }
+        if (!primitive.colors.empty()) vertex.color = primitive.colors[i];
+        if (!primitive.texcoords.empty())
+            vertex.texcoord = glm::vec2(uv_from_mesh * glm::vec3(primitive.texcoords[i], 1.0F));
+    }
+}
+
+}  // namespace
+
+ShadowMesh::ShadowMesh(const scenes::Scene& scene, const scenes::Snapshot& snapshot) {
+    // Floats hold more of a point when they count from the middle.
+    if (!snapshot.bounds.empty()) origin_ = 0.5 * (snapshot.bounds.low + snapshot.bounds.high);
+    std::vector<Vertex> vertices;
+    std::vector<std::uint32_t> indices;
+    for (const scenes::Item& item : snapshot.items) {
+        const scenes::Primitive& primitive = *item.primitive;
+        if (primitive.topology != scenes::Topology::triangles || primitive.indices.empty()) continue;
+        add_draw(scene, primitive, indices.size());
+        const auto base = std::uint32_t(vertices.size());
+        for (const std::uint32_t index : primitive.indices)
+            indices.push_back(base + index);
+        append_vertices(scene, item, origin_, vertices);
+    }
+    triangle_count_ = indices.size() / 3;
+    vertices_ = gl::Buffer::of(std::span<const Vertex>(vertices), "vertices of a shadow map");
+    indices_ = gl::Buffer::of(std::span<const std::uint32_t>(indices), "triangles of a shadow map");
+    add_textures(scene);
+    bind_attributes();
+}
+
+void ShadowMesh::add_draw(const scenes::Scene& scene, const scenes::Primitive& primitive,
+                          std::size_t first_index) {
+    Draw draw{.first_index = first_index,
+              .index_count = primitive.indices.size(),
+              .texture = scene.textures.size()};
+    if (primitive.material >= 0) {
+        const scenes::Material& material = scene.materials[std::size_t(primitive.material)];
+        draw.base_color = material.base_color;
+        if (material.alpha_mode == scenes::AlphaMode::mask) draw.alpha_cutoff = material.alpha_cutoff;
+        if (material.texture >= 0) draw.texture = std::size_t(material.texture);
+    }
+    draws_.push_back(draw);
+}
+
+void ShadowMesh::add_textures(const scenes::Scene& scene) {
+    std::vector<bool> used(scene.textures.size() + 1, false);
+    for (const Draw& draw : draws_)
+        used[draw.texture] = true;
+    constexpr std::uint8_t white[4] = {255, 255, 255, 255};
+    for (std::size_t i = 0; i <= scene.textures.size(); ++i) {
+        const bool own = i < scene.textures.size() && scene.textures[i].image >= 0;
+        if (!used[i]) {
+            textures_.emplace_back();
+        } else if (own) {
+            const scenes::Texture& texture = scene.textures[i];
+            const scenes::Image& image = scene.images[std::size_t(texture.image)];
+            textures_.push_back(
+                make_texture(image.width, image.height, image.rgba.data(), texture.wrap_s, texture.wrap_t));
+        } else {
+            textures_.push_back(make_texture(1, 1, white, scenes::Wrap::repeat, scenes::Wrap::repeat));
+        }
+    }
+}
+
+void ShadowMesh::bind_attributes() {
+    GLuint id = 0;
+    glCreateVertexArrays(1, &id);
+    vertex_array_ = gl::VertexArrayHandle(id);
+    glVertexArrayVertexBuffer(id, 0, vertices_.id(), 0, sizeof(Vertex));
+    glVertexArrayElementBuffer(id, indices_.id());
+    const auto add = [id](GLuint attribute, GLint size, GLenum type, GLboolean normalized,
+                          std::size_t offset) {
+        glEnableVertexArrayAttrib(id, attribute);
+        glVertexArrayAttribFormat(id, attribute, size, type, normalized, GLuint(offset));
+        glVertexArrayAttribBinding(id, attribute, 0);
+    };
+    add(ATTRIBUTE_SHADOW_POSITION, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, position));
+    add(ATTRIBUTE_SHADOW_NORMAL, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, normal));
+    add(ATTRIBUTE_SHADOW_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, color));
+    add(ATTRIBUTE_SHADOW_TEXCOORD, 2, GL_FLOAT, GL_FALSE, offsetof(Vertex, texcoord));
+}
+
+void ShadowMesh::draw(const gl::Program& program) const {
+    glBindVertexArray(vertex_array_.id());
+    for (const Draw& draw : draws_) {
+        program.set("base_color", draw.base_color);
+        program.set("alpha_cutoff", draw.alpha_cutoff);
+        glBindTextureUnit(TEXTURE_SHADOW_BASE_COLOR, textures_[draw.texture].id());
+        glDrawElements(GL_TRIANGLES, GLsizei(draw.index_count), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(draw.first_index * sizeof(std::uint32_t)));
+    }
+}
+
+glm::mat4 ShadowMesh::from_mesh(const glm::dmat4& from_world) const {
+    return glm::mat4(glm::translate(from_world, origin_));
+}
+
+}  // namespace cairn::renderer

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "gl/shader_source.h"
+#include "renderer/shadow/rectangle_light.h"
+#include "renderer/shadow/shadow_mesh.h"
+#include "shaders/interop/types.h"
+
+namespace cairn::renderer {
+
+/// Which faces of the occluders become micro-patches (Atty et al. 2005, section 3.5).
+enum class ShadowPasses : std::uint8_t {
+    one,  ///< the closest to the light
+    two,  ///< the furthest too, in a map of their own; of both maps, the one that hides more light counts
+};
+
+/// What the shares of the light that micro-patches hide are summed in (Atty et al. 2005, appendix A).
+enum class ShadowFormat : std::uint8_t {
+    fp16,          ///< loses what is less than 2^-11 of the sum
+    fp16_batches,  ///< as many batches as the square root of the micro-patches, each summed alone
+    fp32,
+};
+
+struct SoftShadowOptions {
+    int occluder_size = 128;  ///< texels a side of the occluder map, [1, 2048]; Atty et al.: mostly enough
+    int receiver_size = 256;  ///< of the receiver map and of the soft shadow map, [1, 2048]
+    ShadowPasses passes = ShadowPasses::two;
+    ShadowFormat format = ShadowFormat::fp32;
+    bool operator==(const SoftShadowOptions&) const = default;
+};
+
+struct SoftShadowStatistics {
+    double milliseconds = 0.0;        ///< all passes, on the driver's clock
+    double maps_ms = 0.0;             ///< of it: occluder map, receiver map and its pyramid
+    double patches_ms = 0.0;          ///< of it: listing the micro-patches
+    double hide_ms = 0.0;             ///< of it: drawing their penumbra extents
+    std::uint64_t micro_patches = 0;  ///< of both passes
+    std::uint64_t fragments = 0;      ///< of the penumbra extents: texels that a micro-patch was tried on
+    std::uint64_t batches = 0;        ///< sums that were started
+};
+
+/// A square map, row 0 at the low y of its window.
+struct ShadowMapValues {
+    int size = 0;
+    std::vector<float> values;
+    [[nodiscard]] float at(int x, int y) const {
+        return values[std::size_t(y) * std::size_t(size) + std::size_t(x)];
+    }
+};
+
+/// What of a rectangular light the receivers see past the occluders, in a texture as seen from the light.
+/// Needs the context that was current at its construction.
+///
+/// Based on: Atty, Holzschuch, Lapierre, Hasenfratz, Hansen, Sillion, "Soft Shadow Maps: Efficient Sampling
+/// of Light Source Visibility", 2005. Sections 3.1 to 3.5 and appendix A, on the GPU throughout.
+///
+/// Limits of the method: neither occluders nor receivers shadow their own kind; of what stands behind another
+/// occluder (receiver) as seen from the light's centre, nothing is known; occluders nearer to the light's
+/// plane than the frustum's near distance, or outside its window, hide nothing; a sheet that the light's
+/// centre sees edge-on hides nothing. What has no receiver counts as lit.
+class SoftShadowMap {
+public:
+    /// @throws Error  Fault::usage for a size out of range; Fault::context when the driver cannot blend the
+    ///                format (OpenGL 4.5 asks every driver for it).
+    explicit SoftShadowMap(const SoftShadowOptions& options = {}, const gl::ShaderSource& shaders = {});
+    SoftShadowMap(SoftShadowMap&&) noexcept;
+    SoftShadowMap& operator=(SoftShadowMap&&) noexcept;
+    SoftShadowMap(const SoftShadowMap&) = delete;
+    SoftShadowMap& operator=(const SoftShadowMap&) = delete;
+    ~SoftShadowMap();
+
+    /// @throws Error  Fault::usage for a light or a frustum that is none.
+    void compute(const RectangleLight& light, const ShadowFrustum& frustum, const ShadowMesh& occluders,
+                 const ShadowMesh& receivers);
+
+    // Of the last compute().
+    [[nodiscard]] const SoftShadowOptions& options() const;
+    [[nodiscard]] const RectangleLight& light() const;
+    [[nodiscard]] const ShadowFrustum& frustum() const;
+    [[nodiscard]] const SoftShadowStatistics& statistics() const;
+    /// R32F, receiver_size texels a side: the share of the light that is seen, in [0, 1].
+    [[nodiscard]] GLuint visible_texture() const;
+    /// R32F, the same size: inverse depths of receivers, 0 = none.
+    [[nodiscard]] GLuint receiver_texture() const;
+    [[nodiscard]] ShadowMapValues visible() const;
+    [[nodiscard]] ShadowMapValues receiver_inverse_depths() const;
+    /// @param pass  0: the closest occluders, 0 = none; 1: the furthest, SHADOW_NONE = none.
+    [[nodiscard]] ShadowMapValues occluder_inverse_depths(int pass) const;
+    /// Micro-patches of a pass, in the order of the texels.
+    [[nodiscard]] std::vector<interop::MicroPatch> micro_patches(int pass) const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace cairn::renderer

@@ -1,0 +1,136 @@
+// One thread is one waiting primary ray through a volume.
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 VOLUME_STEPS=2
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=1 VOLUME_STEPS=1 HAS_CONSTANT=1
+// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=0 VOLUME_STEPS=16
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 VOLUME_STEPS=1 WITH_MESHES WITH_PROXY
+#define RAYS_WIDEN 1
+#define VISIT_TURNS VOLUME_STEPS
+#include "march/march.glsl"
+#include "march/shade.glsl"
+#include "march/volume.glsl"
+#include "march/volume_light.glsl"
+#if SHOW_TREE
+#include "march/show_tree.glsl"
+#endif
+
+#include "march/launch.glsl"
+
+uniform uint list_out;
+uniform uint shadow_list;
+
+// Of a volume: color.rgb gathers what is seen without the light, normal_depth.xyz what the light adds.
+RayState state;
+
+// Light on a place in the volume.
+struct Lit {
+    float sky;
+    float direct;
+};
+
+// How steep the density is there decides how far it is lit as a surface, two-sided, and how far as fog.
+Lit light_at(Ray ray, float t, vec3 gradient) {
+    const float steep = length(gradient);
+    const float surface = volume.full_gradient > 0.0 ? min(steep / volume.full_gradient, 1.0) : 0.0;
+    const vec3 normal = (dot(gradient, ray.direction) < 0.0 ? gradient : -gradient) / max(steep, 1e-6);
+    const float facing = max(dot(normal, direction_to_light(ray.origin + ray.direction * t)), 0.0);
+    const float ambient = view.light_color.w;
+    return Lit(ambient * mix(1.0, 0.75 + 0.25 * normal.y, surface), (1.0 - ambient) * mix(1.0, facing, surface));
+}
+
+// A stretch of the ray that absorbs and emits evenly. @return what it weighs in the pixel.
+float gather(vec4 optics, float world_length, Lit lit) {
+    const float weight = state.color.a * (1.0 - exp(-optics.a * world_length));
+    const vec3 color = optics.rgb / max(optics.a, 1e-30);
+    state.color.rgb += weight * lit.sky * color;
+    state.normal_depth.xyz += weight * lit.direct * color;
+    state.color.a -= weight;
+    return weight;
+}
+
+// Where the pixel's shadow ray will start: at the depth behind which less than half of what is seen lies. It passes through
+// voxels evenly, so a surface is not shadowed in steps. Where more than half is let through, the voxel that weighs most.
+#define HALF_PASSED 2.0  // weighs more than any voxel
+void note_depth(float t_in, float t_out, float weight) {
+    const float after = state.color.a;
+    const float before = after + weight;
+    if (before > 0.5 && after <= 0.5) {
+        const float share = log(2.0 * before) / max(log(before / max(after, 1e-9)), 1e-6);
+        state.normal_depth.w = mix(t_in, t_out, clamp(share, 0.0, 1.0));
+        state.voxel_t_weight.w = floatBitsToUint(HALF_PASSED);
+    } else if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
+        state.normal_depth.w = 0.5 * (t_in + t_out);
+        state.voxel_t_weight.w = floatBitsToUint(weight);
+    }
+}
+
+bool visit(inout Ray ray, Sample s) {
+    const Neighbours around = neighbours_of(s);
+    const Chord chord = chord_of(ray, s);
+    const vec3 gradient = gradient_at(around, clamp(chord.middle, -0.5, 0.5));
+    const Lit lit = light_at(ray, s.t, gradient);
+    float weight = 0.0;
+    float before = density_on(chord, around, 0.0);
+    for (int i = 0; i < VOLUME_STEPS; ++i) {
+        const float behind_it = density_on(chord, around, float(i + 1));
+        vec4 optics = step_optics(before, density_on(chord, around, float(i) + 0.5), behind_it);
+#if SHOW_TREE
+        optics.rgb = optics.a * tree_color(s, optics.rgb / max(optics.a, 1e-30), gradient);
+#endif
+        weight += gather(optics, chord.step * volume.voxel_size, lit);
+        before = behind_it;
+    }
+    note_depth(2.0 * s.t - ray.t, ray.t, weight);
+    return state.color.a > OPAQUE_TRANSMITTANCE;
+}
+
+#if HAS_CONSTANT
+bool visit_constant(Ray entered, ConstantRun run) {
+    const Lit lit = light_at(entered, 0.5 * (run.t_in + run.t_out), vec3(0.0));
+    const vec4 optics = mean_optics(run.mean.r, run.mean.r);
+    const float weight = gather(optics, max(run.t_out - run.t_in, 0.0) * volume.voxel_size, lit);
+    note_depth(run.t_in, run.t_out, weight);
+    return state.color.a > OPAQUE_TRANSMITTANCE;
+}
+#endif
+
+void main() {
+    Launch launch;
+    if (!find_pixel(launch)) return;
+    const ivec2 pixel = launch.pixel;
+    const uint index = launch.index;
+    const PixelRay seen = pixel_ray(pixel);
+    Ray ray = launched_ray(launch, seen);
+
+    bool inside = true;
+    if (first_pass) {
+        state.color = vec4(0.0, 0.0, 0.0, 1.0);
+        state.normal_depth = vec4(0.0);
+        state.voxel_t_weight = uvec4(0u);
+        inside = enter(ray, launch, seen);
+    } else {
+        state = rays[index];
+        load_position(ray, state);
+    }
+    const int end = inside ? march(ray) : MARCH_DONE;
+
+    if (end == MARCH_MISSING) {
+        store_position(state, ray);
+        rays[index] = state;
+        lists[list_out + atomicAdd(counters.waiting_primary, 1u)] = index;
+        return;
+    }
+    if (state.color.a <= OPAQUE_TRANSMITTANCE) {
+        // What little shines through is the volume's own: no background in an opaque thing.
+        state.color.rgb /= 1.0 - state.color.a;
+        state.normal_depth.xyz /= 1.0 - state.color.a;
+        state.color.a = 0.0;
+    }
+    const vec3 direct = state.normal_depth.xyz;
+    if (view.size_shadow.z != 0 && max(direct.x, max(direct.y, direct.z)) > 1.0 / 1024.0) {
+        state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
+        rays[index] = state;
+        lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
+    } else {
+        write_volume_pixel(pixel, state, 1.0);
+    }
+}

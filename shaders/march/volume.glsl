@@ -1,0 +1,88 @@
+// What a ray takes from a voxel of a volume: the integral of a transfer function along its chord.
+//
+// Densities are interpolated trilinearly between the centres of voxels. Along each step of a chord they are taken as
+// linear, and what a linear density emits and absorbs is looked up in a table (pre-integration: Engel, Kraus and Ertl
+// 2001, section 3). Opacity is 1 - exp(-extinction * length), in world units, so it depends on no step.
+//
+// Needs the define VOLUME_STEPS: steps a voxel's chord.
+layout(binding = TEXTURE_TRANSFER) uniform sampler2D transfer;
+layout(std140, binding = UBO_VOLUME) uniform VolumeBlock { VolumeView volume; };
+
+// Densities of a voxel and those around it: columns are y, rows x. The brick's border has those outside the brick.
+struct Neighbours {
+    mat3 below;  // z - 1
+    mat3 level;
+    mat3 above;
+};
+
+float density(ivec3 texel) { return texelFetch(brick_color, texel, 0).r; }
+
+mat3 slice_of(ivec3 p) {
+    return mat3(density(p), density(p + ivec3(1, 0, 0)), density(p + ivec3(2, 0, 0)),
+                density(p + ivec3(0, 1, 0)), density(p + ivec3(1, 1, 0)), density(p + ivec3(2, 1, 0)),
+                density(p + ivec3(0, 2, 0)), density(p + ivec3(1, 2, 0)), density(p + ivec3(2, 2, 0)));
+}
+
+Neighbours neighbours_of(Sample s) {
+    const ivec3 p = s.texel + s.voxel;
+    return Neighbours(slice_of(p), slice_of(p + ivec3(0, 0, 1)), slice_of(p + ivec3(0, 0, 2)));
+}
+
+float mixed(Neighbours v, vec3 x, vec3 y, vec3 z) {
+    return dot(vec3(dot(x * v.below, y), dot(x * v.level, y), dot(x * v.above, y)), z);
+}
+
+// Weights of the neighbours before, at and behind, for a place in [-0.5, 0.5] from the voxel's centre: trilinear
+// interpolation, whichever side of the centre the place is on.
+vec3 weights(float u) { return vec3(max(-u, 0.0), 1.0 - abs(u), max(u, 0.0)); }
+// Those of the difference between half a voxel behind and half a voxel before.
+vec3 differences(float u) { return vec3(u - 0.5, -2.0 * u, u + 0.5); }
+
+float density_at(Neighbours v, vec3 u) { return mixed(v, weights(u.x), weights(u.y), weights(u.z)); }
+
+// Densities a voxel.
+vec3 gradient_at(Neighbours v, vec3 u) {
+    const vec3 x = weights(u.x);
+    const vec3 y = weights(u.y);
+    const vec3 z = weights(u.z);
+    return vec3(mixed(v, differences(u.x), y, z), mixed(v, x, differences(u.y), z), mixed(v, x, y, differences(u.z)));
+}
+
+// Mean emission and extinction a world unit, while the density goes from s0 to s1.
+vec4 mean_optics(float s0, float s1) {
+    const vec2 place = clamp(vec2(s0, s1), 0.0, 1.0) * float(DENSITY_STEPS - 1);
+    const ivec2 low = min(ivec2(place), DENSITY_STEPS - 2);
+    const vec2 f = place - vec2(low);
+    return mix(mix(texelFetch(transfer, low, 0), texelFetch(transfer, low + ivec2(1, 0), 0), f.x),
+               mix(texelFetch(transfer, low + ivec2(0, 1), 0), texelFetch(transfer, low + ivec2(1, 1), 0), f.x), f.y);
+}
+
+// A voxel's chord, from `from` to `to` of its middle, in voxels of the finest level.
+struct Chord {
+    vec3 middle;     // from the voxel's centre, in voxels of the level
+    vec3 direction;  // in these, for each of the finest
+    float from;
+    float step;
+};
+
+// `ray` has stepped over the voxel (march()).
+Chord chord_of(Ray ray, Sample s) {
+    Chord chord;
+    chord.from = s.t - ray.t;
+    chord.step = max(min(ray.t, ray.t_end) - s.t - chord.from, 0.0) / float(VOLUME_STEPS);
+    chord.middle = s.middle - (vec3(s.voxel) + 0.5);
+    chord.direction = ray.direction / s.side;
+    return chord;
+}
+
+// Density after so many steps.
+float density_on(Chord chord, Neighbours v, float steps) {
+    return density_at(v, clamp(chord.middle + (chord.from + steps * chord.step) * chord.direction, -0.5, 0.5));
+}
+
+// Mean emission and extinction along a step. The density bends on its way from s0 over s1 to s2: what two straight halves
+// say and what a straight whole says tell where finer halves would lead (Richardson's extrapolation).
+vec4 step_optics(float s0, float s1, float s2) {
+    const vec4 halves = 0.5 * (mean_optics(s0, s1) + mean_optics(s1, s2));
+    return max((4.0 * halves - mean_optics(s0, s2)) / 3.0, vec4(0.0));
+}

@@ -1,0 +1,18 @@
+// The distance of the nearest triangle at each pixel; blending keeps the least.
+// defines: MASKED=0
+// defines: MASKED=1
+#include "mesh/mesh_fragment.glsl"
+#if MASKED
+#include "mesh/mesh_material.glsl"
+#endif
+
+layout(location = 0) out float nearest;
+
+void main() {
+    const MeshTriangle triangle = mesh_triangles[gl_PrimitiveID];
+    const MeshHit hit = hit_of(triangle, pixel_ray(ivec2(gl_FragCoord.xy)));
+#if MASKED
+    if (!is_shown(surface_point(triangle, hit), surface_materials[material_number()])) discard;
+#endif
+    nearest = hit.t;
+}

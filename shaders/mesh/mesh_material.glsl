@@ -1,0 +1,23 @@
+// What the surface at a hit looks like: by the code that colours voxels.
+#include "mesh/mesh_fragment.glsl"
+#include "voxelize/surface.glsl"
+#include "voxelize/surface_color.glsl"
+
+uniform uint first;  // triangle of the batch, in the chunk
+
+uint material_number() { return surface_triangles[first + uint(gl_PrimitiveID)].vertices_material.w; }
+
+SurfacePoint surface_point(MeshTriangle triangle, MeshHit hit) {
+    const vec3 from_corner = hit.from_eye - triangle.corner.xyz;
+    const float b = dot(from_corner, triangle.second.xyz), c = dot(from_corner, triangle.third.xyz);
+    const vec3 weights = max(vec3(1.0 - b - c, b, c), 0.0);
+    return SurfacePoint(surface_triangles[first + uint(gl_PrimitiveID)].vertices_material.xyz,
+                        weights / (weights.x + weights.y + weights.z));
+}
+
+// Whether the alpha mask leaves something there.
+bool is_shown(SurfacePoint point, SurfaceMaterial material) {
+    if ((material.flags >> MATERIAL_MASK_BIT & 1u) == 0u) return true;
+    // The weights' sum is rounded, and the cutoff itself passes.
+    return alpha_at(point, material) * 1.00001 >= material.alpha_cutoff;
+}

@@ -1,0 +1,31 @@
+// The rasterized mesh at a pixel: x, y: base colour (linear, half floats); z: normal; w: normal of the triangle's plane,
+// turned to the viewer.
+#include "voxelize/octahedral.glsl"
+
+layout(binding = TEXTURE_MESH_NEAREST) uniform sampler2D mesh_nearest;
+layout(binding = TEXTURE_MESH_SURFACE) uniform usampler2D mesh_surface;
+uniform int mesh_first_row;     // of the picture, in these textures
+uniform bool mesh_shadows;      // voxels cast shadows on meshes
+uniform float mesh_own_height;  // voxels whose centres are not so far over the plane are its own (in their sides)
+
+struct MeshPixel {
+    float t;      // distance from the ray's origin; MESH_MISS = nothing there
+    vec3 color;
+    vec3 normal;  // 0 = nothing there
+    vec3 plane;
+};
+
+// `pixel` in the band.
+MeshPixel mesh_pixel(ivec2 pixel) {
+    const ivec2 place = pixel + ivec2(0, view.band.x - mesh_first_row);
+    const uvec4 surface = texelFetch(mesh_surface, place, 0);
+    MeshPixel mesh = MeshPixel(texelFetch(mesh_nearest, place, 0).r, vec3(0.0), vec3(0.0), vec3(0.0));
+    if (surface.w != 0u) {
+        mesh.color = vec3(unpackHalf2x16(surface.x), unpackHalf2x16(surface.y).x);
+        mesh.normal = decode_normal(surface.z);
+        mesh.plane = decode_normal(surface.w);
+    }
+    return mesh;
+}
+
+bool is_there(MeshPixel mesh) { return mesh.t < MESH_MISS; }

@@ -1,0 +1,13 @@
+// A vertex of a mesh, where pixel_ray() sees it. Rows go downwards, so fronts are clockwise.
+#include "mesh/mesh_view.glsl"
+
+layout(location = ATTRIBUTE_POSITION) in ivec3 position;  // lattice units
+
+invariant gl_Position;
+
+void main() {
+    const dvec3 p = from_eye(position);
+    const double w = dot(mesh_view.along.xyz, p) + mesh_view.along.w;
+    // Clipping at -w <= z is clipping at w >= down.w. Nothing else is made of z: fragments know their distance.
+    gl_Position = vec4(dvec4(dot(mesh_view.across.xyz, p), dot(mesh_view.down.xyz, p), w - 2.0lf * mesh_view.down.w, w));
+}

@@ -1,0 +1,34 @@
+// One thread is one word of a new brick's masks. A tile that has a brick is occupied, so they are the same in all.
+// defines: BRICK_M=16
+// defines: BRICK_M=8
+#include "produce/fractal.glsl"
+#include "pool/brick_masks.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = SSBO_BRICK_MASKS) writeonly buffer MaskBlock { uvec2 brick_masks[]; };
+
+ivec3 place_of(int i, int side) { return ivec3(i % side, i / side % side, i / (side * side)); }
+
+void main() {
+    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (i >= tile_count * uint(MASK_WORDS_A_SLOT)) return;
+    const int word = int(i % uint(MASK_WORDS_A_SLOT));
+    const bool is_summary = word < SUMMARY_WORDS;
+    const int block = word - SUMMARY_WORDS;
+    uvec2 mask = uvec2(0u);
+    for (int bit = 0; bit < 64; ++bit) {
+        bool full;
+        if (is_summary) {
+            const int of = 64 * word + bit;
+            full = of < BLOCKS && in_set(place_of(of, BLOCKS_A_SIDE));
+        } else {
+            full = in_set(4 * place_of(block, BLOCKS_A_SIDE) + place_of(bit, 4));
+        }
+        if (!full) continue;
+        if (bit < 32) mask.x |= 1u << bit;
+        else mask.y |= 1u << (bit - 32);
+    }
+    const uint slot = uint(tiles[i / uint(MASK_WORDS_A_SLOT)].slot_texel.w);
+    brick_masks[slot * uint(MASK_WORDS_A_SLOT) + uint(word)] = mask;
+}

@@ -1,0 +1,9 @@
+// What a batch of micro-patches hides, added to the batches before (Atty et al. 2005, appendix A).
+#include "interop/bindings.h"
+
+layout(binding = TEXTURE_SHADOW_HIDDEN) uniform sampler2D batch;
+layout(location = 0) out float hidden;
+
+void main() {
+    hidden = texelFetch(batch, ivec2(gl_FragCoord.xy), 0).x;
+}

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "renderer/produce/content.h"
+#include "renderer/renderer.h"
+
+/// Content of few words, for what no surface has: a solid box of thin fog, all of one colour, over a white
+/// floor. Both end on the planes of the coarsest voxels, so that all levels show the same shape.
+namespace cairn::test {
+
+struct BoxOptions {
+    int n = 4;
+    int margin = 1;        ///< the box spans [margin / n, 1 - margin / n] of the root cube along each axis
+    bool constant = true;  ///< tells of tiles whose voxels are all alike, border included
+    bool low_frequency = false;  ///< calls tiles of level 1 and more in the low half along x final
+};
+
+class BoxContent final : public renderer::Content, public renderer::Oracle, public renderer::Producer {
+public:
+    BoxContent(const renderer::TreeShape& shape, const BoxOptions& options);
+
+    [[nodiscard]] renderer::Oracle& oracle() override { return *this; }
+    [[nodiscard]] renderer::Producer& producer() override { return *this; }
+    [[nodiscard]] const voxelizer::Grid& grid() const override { return grid_; }
+    [[nodiscard]] bool has_color() const override { return true; }
+    [[nodiscard]] glm::vec3 uniform_color() const override { return glm::vec3(1.0F); }
+    [[nodiscard]] bool has_constant() const override { return options_.constant; }
+    [[nodiscard]] bool has_low_frequency() const override { return options_.low_frequency; }
+
+    [[nodiscard]] glm::uvec2 child_mask(const renderer::Tile& tile) override;
+    [[nodiscard]] bool is_empty(const renderer::Tile& tile) override;
+    std::vector<renderer::Produced> produce(std::span<const renderer::BrickRequest> requests,
+                                            const renderer::BrickPool& pool) override;
+
+    /// All that was ever produced, in order.
+    [[nodiscard]] const std::vector<renderer::Tile>& produced() const { return produced_; }
+
+    /// Texels of the box and of the floor: square roots of the colour times the coverage, and the coverage.
+    static constexpr glm::u8vec4 fog{2, 1, 2, 2};
+    static constexpr glm::u8vec4 floor{255, 255, 255, 255};
+
+private:
+    /// What voxel v of a level holds, by its centre; outside the root cube nothing.
+    [[nodiscard]] glm::u8vec4 texel(const glm::i64vec3& v, int level) const;
+    void write(const renderer::BrickPool& pool, int slot, const std::vector<glm::u8vec4>& texels) const;
+
+    renderer::TreeShape shape_;
+    BoxOptions options_;
+    voxelizer::Grid grid_;
+    std::vector<renderer::Tile> produced_;
+};
+
+}  // namespace cairn::test
