@@ -340,8 +340,8 @@ TreeShape tree_shape_of(const TreeOptions& options) {
     if (!options.max_level)
         return make_tree_shape(options.n, options.m, options.max_resolution, options.mips);
     if (options.mips) {
-        throw Error(Fault::usage, "tree", "bricks of a tree of so many levels have no mip levels",
-                    "give its maximum resolution instead of its levels, or leave the mips out");
+        throw Error(Fault::usage, "tree", "bricks of a tree of any depth have no mip levels",
+                    "leave the mips and blended levels of detail to surfaces");
     }
     return make_deep_tree_shape(options.n, options.m, *options.max_level);
 }

@@ -73,10 +73,11 @@ protected:
                              GLsizeiptr(mask_bytes), noise(mask_bytes).data());
     }
     static Tile tile(int i) { return {3, {i, 2 * i, 5}}; }
+    /// Random bytes in all slots of the pool leave it and come back, each to another slot.
+    static void expect_bricks_back(const BrickPool& pool);
 };
 
-TEST_P(BrickCacheTest, BrickComesBackBitForBitInAnotherSlot) {
-    const BrickPool pool(renderer::make_tree_shape(2, m, 64), GetParam(), 60 * slot_bytes(GetParam()));
+void BrickCacheTest::expect_bricks_back(const BrickPool& pool) {
     BrickCache cache(pool, std::size_t(1) << 20U);
     Random random(8);
     std::vector<std::vector<std::uint8_t>> bricks;
@@ -101,6 +102,19 @@ TEST_P(BrickCacheTest, BrickComesBackBitForBitInAnotherSlot) {
     EXPECT_FALSE(cache.restore(tile(1000), 0));
     EXPECT_EQ(cache.counters().stored, bricks.size());
     EXPECT_EQ(cache.counters().restored, bricks.size());
+}
+
+TEST_P(BrickCacheTest, BrickComesBackBitForBitInAnotherSlot) {
+    const BrickPool pool(renderer::make_tree_shape(2, m, 64), GetParam(), 60 * slot_bytes(GetParam()));
+    expect_bricks_back(pool);
+}
+
+TEST_P(BrickCacheTest, BrickComesBackWithItsMips) {
+    for (const int n : {2, 4, 8}) {
+        SCOPED_TRACE(n);
+        const renderer::TreeShape shape = renderer::make_tree_shape(n, m, 64, true);
+        expect_bricks_back(BrickPool(shape, GetParam(), 60 * slot_bytes(GetParam())));
+    }
 }
 
 TEST_P(BrickCacheTest, KeepsWithinItsBytesWhatWasUsedLast) {

@@ -1,4 +1,5 @@
 // Levels of detail: what mips hold, that nothing pops, and that there are no seams.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -165,10 +166,16 @@ TEST_P(BlendedShapes, PictureDoesNotDependOnHowOftenRaysAreInterrupted) {
     const Image expected = roomy.render(view);
     EXPECT_EQ(roomy.render(view).rgba, expected.rgba) << "one pass, no ray waits";
     tree.brick_pool_bytes = roomy.statistics().brick_pool_bytes / roomy.statistics().brick_slots * 8;
-    tree.node_pool_bytes = 12 * 64 * 16;
+    tree.node_pool_bytes = std::size_t(12 * std::max(tree.n * tree.n * tree.n, 64)) * 16;
     Renderer tight = make_renderer(scene, tree);
     EXPECT_EQ(tight.render(view).rgba, expected.rgba) << "a few bricks at a time";
     EXPECT_GT(tight.statistics().passes, roomy.statistics().passes);
+    tree.brick_cache_bytes = std::size_t(64) << 20U;
+    Renderer cached = make_renderer(scene, tree);
+    (void)cached.render(view);
+    cached.forget_picture();
+    EXPECT_EQ(cached.render(view).rgba, expected.rgba) << "with bricks from main memory";
+    EXPECT_GT(cached.statistics().bricks_restored, 0U);
     Renderer hurried = make_renderer(scene, options(512));
     int frames = 0;
     Image ours;
@@ -199,7 +206,8 @@ TEST_P(BlendedShapes, ClosedSurfaceLetsNoBackgroundThrough) {
 }
 
 INSTANTIATE_TEST_SUITE_P(NAndM, BlendedShapes,
-                         ::testing::Values(std::pair(4, 16), std::pair(4, 8), std::pair(2, 8)),
+                         ::testing::Values(std::pair(4, 16), std::pair(4, 8), std::pair(2, 8),
+                                           std::pair(8, 8)),
                          [](const auto& shape) {
                              return fmt::format("N{}M{}", shape.param.first, shape.param.second);
                          });
@@ -236,6 +244,26 @@ TEST_F(LevelOfDetailTest, BlendingNeedsMips) {
     } catch (const Error& error) {
         EXPECT_EQ(error.fault(), Fault::usage);
     }
+}
+
+TEST_F(LevelOfDetailTest, MipsGoWithSurfacesAndPowersOfTwo) {
+    const auto fault_of = [](const auto& make) {
+        try {
+            make();
+        } catch (const Error& error) {
+            return error.fault();
+        }
+        ADD_FAILURE() << "accepted";
+        return Fault::internal;
+    };
+    const scenes::Scene scene = ball_over_floor();
+    EXPECT_EQ(fault_of([&] { (void)make_renderer(scene, {.n = 3, .m = 27, .max_resolution = 243}); }),
+              Fault::usage);
+    const scenes::Volume fog{.size = glm::ivec3(16), .samples = std::vector<std::uint16_t>(4096, 30000)};
+    const renderer::TransferFunction transfer({{.value = 0.0, .extinction = 1.0}});
+    EXPECT_EQ(fault_of([&] { (void)Renderer(fog, transfer, {.mips = true}); }), Fault::usage);
+    TreeOptions deep{.mips = true, .max_level = 20};
+    EXPECT_EQ(fault_of([&] { (void)renderer::tree_shape_of(deep); }), Fault::usage);
 }
 
 TEST_F(LevelOfDetailTest, MipsDoNotChangeTheNearestLevelsPicture) {

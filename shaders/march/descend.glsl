@@ -144,8 +144,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #else
     place.tile_shift = resume(ray, entry, node);
 #if BLENDED
-    // Around this voxel the ray may see a tile whose children it saw elsewhere.
-    if (place.tile_shift < ROOT_SHIFT && shows(ray, place.tile_shift + N_SHIFT)) {
+    // Around this voxel the ray may see a tile itself whose children it saw elsewhere: this one, or one above it.
+    if (place.tile_shift < ROOT_SHIFT && shows(ray, place.tile_shift)) {
         forget_trail();
         place.tile_shift = resume(ray, entry, node);
     }
