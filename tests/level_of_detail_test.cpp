@@ -259,7 +259,9 @@ TEST_F(LevelOfDetailTest, MipsGoWithSurfacesAndPowersOfTwo) {
     const scenes::Scene scene = ball_over_floor();
     EXPECT_EQ(fault_of([&] { (void)make_renderer(scene, {.n = 3, .m = 27, .max_resolution = 243}); }),
               Fault::usage);
-    const scenes::Volume fog{.size = glm::ivec3(16), .samples = std::vector<std::uint16_t>(4096, 30000)};
+    scenes::Volume fog;
+    fog.size = glm::ivec3(16);
+    fog.samples.assign(4096, 30000);
     const renderer::TransferFunction transfer({{.value = 0.0, .extinction = 1.0}});
     EXPECT_EQ(fault_of([&] { (void)Renderer(fog, transfer, {.mips = true}); }), Fault::usage);
     TreeOptions deep{.mips = true, .max_level = 20};
