@@ -154,7 +154,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     place.brick_shift = place.tile_shift;
 #endif
 #endif
-    if (MAX_LEVEL > 0 && has_no_child(node)) return DESCENT_EMPTY;  // nothing in the whole scene
+    // Nothing in the whole scene. (Further down, a tile may show something itself where none of its children does.)
+    if (MAX_LEVEL > 0 && place.tile_shift == ROOT_SHIFT && has_no_child(node)) return DESCENT_EMPTY;
 #if PROGRESSIVE
     Ancestor ancestor = ancestor_of(uvec4(0u), 0u, ROOT_SHIFT);
 #endif
