@@ -70,6 +70,13 @@ renderer::Show show_named(const std::string& name) {
                 "choose surface, levels or bricks");
 }
 
+renderer::LevelOfDetail level_of_detail_named(const std::string& name) {
+    if (name == "nearest") return renderer::LevelOfDetail::nearest;
+    if (name == "blended") return renderer::LevelOfDetail::blended;
+    throw Error(Fault::usage, "--level-of-detail", fmt::format("there is no \"{}\"", name),
+                "choose nearest or blended");
+}
+
 double pixel_error_of(const std::string& text) {
     const double pixels = parse_number("--pixel-error", text);
     if (pixels < least_pixel_error || pixels > largest_pixel_error) {
@@ -183,6 +190,14 @@ void add_view_options(CLI::App& verb, ViewOptions& options) {
                       [&options](const std::string& text) { set_shadow(options.view, text); });
     add_tree_options(verb, options);
     add_parsed_option(
+        verb, "--level-of-detail", "nearest|blended",
+        "one size of voxels at a time, or two that lead over, so\nthat nothing pops when the camera moves; "
+        "of surfaces\n(default: nearest)",
+        [&options](const std::string& text) {
+            options.view.level_of_detail = level_of_detail_named(text);
+            options.tree.mips = options.view.level_of_detail == renderer::LevelOfDetail::blended;
+        });
+    add_parsed_option(
         verb, "--transfer", "NAME|POINTS",
         fmt::format(
             "what the densities of a volume look like:\n{}; or points\nDENSITY:R,G,B:EXTINCTION with \";\" "
@@ -237,6 +252,7 @@ std::string render_command(const SceneOptions& scene, const ViewOptions& options
     if (view.shadow == renderer::Shadow::hard && view.shadow_rays > 1) add("--shadow", "soft");
     if (view.pixel_error != renderer::View{}.pixel_error)
         add("--pixel-error", fmt::format("{}", view.pixel_error));
+    if (view.level_of_detail == renderer::LevelOfDetail::blended) add("--level-of-detail", "blended");
     if (view.show != renderer::Show::surface) add("--show", std::string(show_names[int(view.show)]));
     if (options.tree.max_resolution != renderer::TreeOptions{}.max_resolution)
         add("--max-resolution", std::to_string(options.tree.max_resolution));

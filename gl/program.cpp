@@ -106,6 +106,9 @@ void Program::set(const char* name, const glm::vec4& value) const {
 void Program::set(const char* name, const glm::mat4& value) const {
     glProgramUniformMatrix4fv(id(), glGetUniformLocation(id(), name), 1, GL_FALSE, glm::value_ptr(value));
 }
+void Program::set(const char* name, std::span<const glm::ivec4> values) const {
+    glProgramUniform4iv(id(), glGetUniformLocation(id(), name), GLsizei(values.size()), &values.front().x);
+}
 
 Program build_compute(const ShaderSource& source, std::string_view name, const Defines& defines) {
     const ShaderHandle shader = compile(GL_COMPUTE_SHADER, source, name, defines);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -27,6 +28,8 @@ public:
     void set(const char* name, const glm::vec3& value) const;
     void set(const char* name, const glm::vec4& value) const;
     void set(const char* name, const glm::mat4& value) const;
+    /// An array, from its first element on.
+    void set(const char* name, std::span<const glm::ivec4> values) const;
 
 private:
     ProgramHandle handle_;

@@ -339,6 +339,10 @@ struct Renderer::Parts {
                   {options.traversal, options.block_starts, options.query_capacity, options.tile_queries},
                   shaders, with_content(std::move(kind), *content)),
           tile_queries(options.tile_queries) {
+        if (options.mips && !content->fills_mips()) {
+            throw Error(Fault::usage, "tree", "the bricks of this content have no mip levels",
+                        "leave the mips and blended levels of detail to surfaces");
+        }
         if (options.brick_cache_bytes == 0) return;
         if (content->has_low_frequency()) {
             throw Error(Fault::usage, "brick cache", "it cannot tell which tiles of this content are final",
@@ -374,6 +378,7 @@ struct Renderer::Parts {
     void keep_nothing();
     void keep_what_was_used_for(const View& view, Rows rows);
     [[nodiscard]] bool is_empty() const;
+    [[nodiscard]] bool blends(const View& view) const;
     void note_caches(const FrameStatistics& before);
     [[nodiscard]] FrameStatistics totals() const;
 
@@ -416,8 +421,13 @@ Renderer::Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
     : parts_(std::make_unique<Parts>(tree_shape_of(options), std::move(content), options, shaders)) {}
 
 TreeShape tree_shape_of(const TreeOptions& options) {
-    return options.max_level ? make_deep_tree_shape(options.n, options.m, *options.max_level)
-                             : make_tree_shape(options.n, options.m, options.max_resolution);
+    if (!options.max_level)
+        return make_tree_shape(options.n, options.m, options.max_resolution, options.mips);
+    if (options.mips) {
+        throw Error(Fault::usage, "tree", "bricks of a tree of any depth have no mip levels",
+                    "leave the mips and blended levels of detail to surfaces");
+    }
+    return make_deep_tree_shape(options.n, options.m, *options.max_level);
 }
 
 Renderer::Renderer(const scenes::Volume& volume, const TransferFunction& transfer, const TreeOptions& options,
@@ -708,7 +718,7 @@ void Renderer::Parts::look_ahead(Clock::time_point deadline) {
     interop::MarchView marched = march_view_of(fine);
     marched.band = glm::ivec4(rows.first, rows.count, int(fine.show), int(background_pixel(fine.background)));
     tree.keep_since(ahead.since);
-    marcher.begin_frame(marched, tree, pool);
+    marcher.begin_frame(marched, tree, pool, blends(ahead.view));
     for (;;) {
         const PassResult pass = march(PassKind::progressive);
         const bool answered = serve_until(deadline, pass, {.in_any_case = true, .ahead = true});
@@ -739,6 +749,16 @@ void Renderer::Parts::keep_what_was_used_for(const View& view, Rows rows) {
 /// Nothing in the whole scene: known without a ray. (A tree of one level has no children to tell it.)
 bool Renderer::Parts::is_empty() const {
     return shape.max_level > 0 && tree.node(0).child_mask == glm::uvec2(0);
+}
+
+/// @throws Error (Fault::usage) when the view asks for blended levels of detail and bricks have no mips.
+bool Renderer::Parts::blends(const View& view) const {
+    const bool is_blended = view.level_of_detail == LevelOfDetail::blended;
+    if (is_blended && shape.mips == 0) {
+        throw Error(Fault::usage, "view", "levels of detail cannot be blended without mip levels",
+                    "make the renderer of a surface with TreeOptions::mips");
+    }
+    return is_blended;
 }
 
 /// Counters since the renderer was made.
@@ -797,6 +817,7 @@ Image Renderer::march(const View& view, Rows rows, int shown, const std::functio
         throw Error(Fault::usage, "view", "soft shadows of a volume", "give it one shadow ray a pixel");
     }
     if (!(view == parts.ahead.view)) parts.ahead = {view, parts.round, 0, false};
+    const bool is_blended = parts.blends(view);
     const auto start = Clock::now();
     const FrameStatistics before = parts.totals();
     parts.statistics = FrameStatistics{};
@@ -818,7 +839,7 @@ Image Renderer::march(const View& view, Rows rows, int shown, const std::functio
     for (int row = rows.first; row < end && !is_known; row += marched.band.y) {
         const int drawn_end = std::min(parts.draw_mix(marched, row), end);
         marched.band = glm::ivec4(row, std::min(band_rows, drawn_end - row), shown, int(background));
-        parts.marcher.begin_frame(marched, parts.tree, parts.pool, parts.drawn);
+        parts.marcher.begin_frame(marched, parts.tree, parts.pool, is_blended, parts.drawn);
         march_band(row);
         std::vector<std::uint8_t> band = parts.marcher.read_image();
         if (image.rgba.empty()) {
@@ -876,13 +897,14 @@ std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
     const auto deadline = deadline_in(budget_ms);
     Parts& parts = *parts_;
     parts.require_lists();
+    const bool is_blended = parts.blends(next);
     if (parts.is_empty()) return 0;
     const FrameStatistics of_frame = parts.statistics;
     const View thin = thinned(next);
     interop::MarchView marched = parts.march_view_of(thin);
     marched.band = glm::ivec4(0, thin.height, int(thin.show), int(background_pixel(thin.background)));
     parts.tree.keep_since(parts.frame_round);
-    parts.marcher.begin_frame(marched, parts.tree, parts.pool);
+    parts.marcher.begin_frame(marched, parts.tree, parts.pool, is_blended);
     while (Clock::now() < deadline) {
         const PassResult pass = parts.march(PassKind::progressive);
         if (!parts.serve_until(deadline, pass, {.ahead = true}) || pass.done()) break;

@@ -65,12 +65,22 @@ enum class Shadow : std::uint8_t { none, hard };
 /// What stands in for the surface's own colour, lit and shadowed like it.
 enum class Show : std::uint8_t {
     surface,  ///< nothing: the scene
-    levels,   ///< the tree level of the voxels that a pixel shows: shown_level_color()
+    levels,   ///< the size of the voxels that a pixel shows, as a tree level: shown_level_color()
     bricks,   ///< the scene, and lines where it passes from one brick into the next, in the level's colour
 };
 
-/// Linear. Level 0 is the root's brick; each level has voxels TreeOptions::n times finer.
-[[nodiscard]] glm::vec3 shown_level_color(int level);
+/// Linear. Level 0 is the root's brick; each level has voxels TreeOptions::n times finer, and mips lie
+/// between: with n = 4, level 1.5 has voxels twice as fine as level 1.
+[[nodiscard]] glm::vec3 shown_level_color(double level);
+
+/// How the size of the voxels follows the width of a pixel's cone (Crassin et al. 2008, section 4.3). Both
+/// use the same bricks.
+enum class LevelOfDetail : std::uint8_t {
+    nearest,  ///< the voxels of the tree level that is nearest to it, by ratio: sharpest, cheapest, and it
+              ///< pops
+    blended,  ///< between a level and the next the brick's mips lead over: nothing pops. Needs
+              ///< TreeOptions::mips
+};
 
 struct View {
     int width = 512;  ///< pixels, [1, 16384]
@@ -79,9 +89,9 @@ struct View {
     Light light;
     Shadow shadow = Shadow::hard;
     glm::vec3 background{0.80F, 0.84F, 0.90F};  ///< linear
-    /// Size of a voxel on the screen, in pixels: a ray takes the tree level whose voxels are nearest to it,
-    /// by ratio, as in mip mapping (Crassin et al. 2008, section 4.3).
+    /// Size of a voxel on the screen, in pixels, that level_of_detail follows.
     double pixel_error = 1.0;
+    LevelOfDetail level_of_detail = LevelOfDetail::nearest;
     /// Size of the voxels that a shadow ray meets, in those that its pixel shows: above 1 it reads, and asks
     /// for, coarser data of its own. [1/64, 64]
     double shadow_pixel_error = 1.0;
@@ -107,6 +117,8 @@ struct TreeOptions {
     int n = 4;   ///< children an axis: 2, 3, 4 or 8
     int m = 16;  ///< voxels of a brick an axis, without the border: 8, 16, 32 or 64; 27 or 81 with n = 3
     int max_resolution = 8192;  ///< voxels across the root cube that rays may ask for
+    bool mips = false;  ///< bricks hold mip levels, for LevelOfDetail::blended; a fifth more memory. Of
+                        ///< surfaces, not with n = 3
     /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest
     /// voxels are at least 2^-60 of the root cube.
     std::optional<int> max_level = std::nullopt;

@@ -39,7 +39,7 @@ protected:
         std::vector<std::uint8_t> bytes;
         glPixelStorei(GL_PACK_ALIGNMENT, 1);
         for (const BrickPool::Layer& layer : pool.layers()) {
-            const glm::ivec3 low = pool.slot_place(slot) * layer.side;
+            const glm::ivec3 low = pool.first_texel(slot, layer.mip);
             const int size = layer.side * layer.side * layer.side * layer.texel_bytes;
             bytes.resize(bytes.size() + std::size_t(size));
             glGetTextureSubImage(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
@@ -61,7 +61,7 @@ protected:
         };
         glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
         for (const BrickPool::Layer& layer : pool.layers()) {
-            const glm::ivec3 low = pool.slot_place(slot) * layer.side;
+            const glm::ivec3 low = pool.first_texel(slot, layer.mip);
             const std::size_t texels = std::size_t(layer.side * layer.side * layer.side);
             glTextureSubImage3D(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
                                 layer.format, layer.type,
@@ -73,10 +73,11 @@ protected:
                              GLsizeiptr(mask_bytes), noise(mask_bytes).data());
     }
     static Tile tile(int i) { return {3, {i, 2 * i, 5}}; }
+    /// Random bytes in all slots of the pool leave it and come back, each to another slot.
+    static void expect_bricks_back(const BrickPool& pool);
 };
 
-TEST_P(BrickCacheTest, BrickComesBackBitForBitInAnotherSlot) {
-    const BrickPool pool(renderer::make_tree_shape(2, m, 64), GetParam(), 60 * slot_bytes(GetParam()));
+void BrickCacheTest::expect_bricks_back(const BrickPool& pool) {
     BrickCache cache(pool, std::size_t(1) << 20U);
     Random random(8);
     std::vector<std::vector<std::uint8_t>> bricks;
@@ -101,6 +102,19 @@ TEST_P(BrickCacheTest, BrickComesBackBitForBitInAnotherSlot) {
     EXPECT_FALSE(cache.restore(tile(1000), 0));
     EXPECT_EQ(cache.counters().stored, bricks.size());
     EXPECT_EQ(cache.counters().restored, bricks.size());
+}
+
+TEST_P(BrickCacheTest, BrickComesBackBitForBitInAnotherSlot) {
+    const BrickPool pool(renderer::make_tree_shape(2, m, 64), GetParam(), 60 * slot_bytes(GetParam()));
+    expect_bricks_back(pool);
+}
+
+TEST_P(BrickCacheTest, BrickComesBackWithItsMips) {
+    for (const int n : {2, 4, 8}) {
+        SCOPED_TRACE(n);
+        const renderer::TreeShape shape = renderer::make_tree_shape(n, m, 64, true);
+        expect_bricks_back(BrickPool(shape, GetParam(), 60 * slot_bytes(GetParam())));
+    }
 }
 
 TEST_P(BrickCacheTest, KeepsWithinItsBytesWhatWasUsedLast) {

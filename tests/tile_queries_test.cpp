@@ -122,7 +122,7 @@ struct Scenery {
         return {shape_, content_.has_color(), options, {}};
     }
     renderer::PassResult first_pass(renderer::Marcher& marcher) const {
-        marcher.begin_frame(view_, tree_, pool_);
+        marcher.begin_frame(view_, tree_, pool_, false);
         return marcher.run_pass(round_, tree_, pool_);
     }
     /// Whether it is for a brick, and the level. Those that serve() answers first are the largest.

@@ -17,6 +17,7 @@ namespace cairn::test {
 namespace {
 
 using renderer::Image;
+using renderer::LevelOfDetail;
 using renderer::Renderer;
 using renderer::Traversal;
 using renderer::TreeOptions;
@@ -96,13 +97,25 @@ std::vector<View> hard_views(const scenes::Scene& scene) {
     return views;
 }
 
-class Shapes : public GlTest, public ::testing::WithParamInterface<std::pair<int, int>> {
+struct Shape {
+    int n, m;
+    LevelOfDetail level_of_detail;
+};
+
+class Shapes : public GlTest, public ::testing::WithParamInterface<Shape> {
 protected:
     static TreeOptions options() {
-        return {.n = GetParam().first,
-                .m = GetParam().second,
+        return {.n = GetParam().n,
+                .m = GetParam().m,
                 .max_resolution = 1024,
+                .mips = GetParam().level_of_detail == LevelOfDetail::blended,
                 .brick_pool_bytes = 48U << 20U};
+    }
+    static std::vector<View> views(const scenes::Scene& scene) {
+        std::vector<View> views = hard_views(scene);
+        for (View& view : views)
+            view.level_of_detail = GetParam().level_of_detail;
+        return views;
     }
 };
 
@@ -115,7 +128,7 @@ TEST_P(Shapes, EveryTraversalGivesThePictureOfRestarts) {
     Renderer stackless = make_renderer(scene, with);
     with.traversal = Traversal::mini_stack;
     Renderer mini_stack = make_renderer(scene, with);
-    const std::vector<View> views = hard_views(scene);
+    const std::vector<View> views = Shapes::views(scene);
     for (std::size_t i = 0; i < views.size(); ++i) {
         const Image image = expected.render(views[i]);
         EXPECT_EQ(difference(stackless.render(views[i]), image), "") << "stackless, view " << i;
@@ -134,7 +147,7 @@ TEST_P(Shapes, LateStartsAndEarlyEndsChangeNothing) {
         Renderer plain = make_renderer(scene, with);
         with.block_starts = true;
         Renderer ours = make_renderer(scene, with);
-        const std::vector<View> views = hard_views(scene);
+        const std::vector<View> views = Shapes::views(scene);
         std::size_t seen = 0;
         for (std::size_t i = 0; i < views.size(); ++i) {
             const Image expected = plain.render(views[i]);
@@ -149,8 +162,15 @@ TEST_P(Shapes, LateStartsAndEarlyEndsChangeNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    NAndM, Shapes, ::testing::Values(std::pair(4, 16), std::pair(4, 8), std::pair(2, 8), std::pair(2, 32)),
-    [](const auto& shape) { return fmt::format("N{}M{}", shape.param.first, shape.param.second); });
+    NAndM, Shapes,
+    ::testing::Values(Shape{4, 16, LevelOfDetail::nearest}, Shape{4, 8, LevelOfDetail::nearest},
+                      Shape{2, 8, LevelOfDetail::nearest}, Shape{2, 32, LevelOfDetail::nearest},
+                      Shape{4, 16, LevelOfDetail::blended}, Shape{4, 8, LevelOfDetail::blended},
+                      Shape{2, 8, LevelOfDetail::blended}, Shape{8, 8, LevelOfDetail::blended}),
+    [](const auto& shape) {
+        return fmt::format("N{}M{}{}", shape.param.n, shape.param.m,
+                           shape.param.level_of_detail == LevelOfDetail::blended ? "Blended" : "");
+    });
 
 class TraversalTest : public GlTest {};
 

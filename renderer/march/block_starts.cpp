@@ -21,8 +21,9 @@ constexpr double place_margin = 0x1p-21;
 
 class BlockGrid {
 public:
-    explicit BlockGrid(const interop::MarchView& view, double root_side)
+    BlockGrid(const interop::MarchView& view, double root_side, bool is_blended)
         : view_(view),
+          is_blended_(is_blended),
           forward_(view.forward),
           eye_(dvec3(view.eye) - double(view.forward.w) * forward_),
           across_(dvec3(view.right) / glm::dot(dvec3(view.right), dvec3(view.right))),
@@ -34,7 +35,7 @@ public:
           near_(std::size_t(count_.x) * std::size_t(count_.y), std::numeric_limits<double>::infinity()),
           far_(near_.size(), 0.0) {}
 
-    [[nodiscard]] ConeOfSight cone() const { return {eye_, double(view_.eye.w)}; }
+    [[nodiscard]] ConeOfSight cone() const { return {eye_, double(view_.eye.w), is_blended_}; }
 
     /// Does any ray of the band come near the box?
     [[nodiscard]] bool sees(const Box& box) const {
@@ -46,9 +47,7 @@ public:
         const Rectangle r = project(box);
         if (r.low.x > r.high.x || r.low.y > r.high.y) return;
         const double near = cone().distance_to(box) * (1.0 - 1e-6) - 2.0 * slack_;
-        const double far =
-            glm::length(glm::max(glm::abs(box.low - eye_), glm::abs(box.high - eye_))) * (1.0 + 1e-6) +
-            2.0 * slack_;
+        const double far = cone().distance_past(box) * (1.0 + 1e-6) + 2.0 * slack_;
         for (int y = r.low.y / PIXEL_BLOCK_SIDE; y <= r.high.y / PIXEL_BLOCK_SIDE; ++y) {
             for (int x = r.low.x / PIXEL_BLOCK_SIDE; x <= r.high.x / PIXEL_BLOCK_SIDE; ++x) {
                 const std::size_t block = std::size_t(y) * std::size_t(count_.x) + std::size_t(x);
@@ -96,6 +95,7 @@ private:
     }
 
     const interop::MarchView& view_;
+    bool is_blended_;
     dvec3 forward_;
     dvec3 eye_;
     dvec3 across_;  ///< with a point from the eye, at depth 1: its place on the picture, [-1, 1]
@@ -109,8 +109,9 @@ private:
 
 }  // namespace
 
-std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, const Tree& tree) {
-    BlockGrid grid(view, double(tree.shape().resolution()));
+std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, const Tree& tree,
+                                              bool is_blended) {
+    BlockGrid grid(view, double(tree.shape().resolution()), is_blended);
     FrontCells(
         tree, grid.cone(), [&](const Box& box) { return grid.sees(box); },
         [&](const Box& box) { grid.add(box); })

@@ -18,7 +18,9 @@ namespace cairn::renderer {
 /// cells where there are thousands of beams.
 ///
 /// Reads the CPU mirror of the tree: call it between Tree::upload() and the pass.
-[[nodiscard]] std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, const Tree& tree);
+/// @param is_blended  rays see mips too.
+[[nodiscard]] std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, const Tree& tree,
+                                                            bool is_blended);
 
 /// Every block of the band, and rays that start at the eye and end behind everything.
 [[nodiscard]] std::vector<interop::BlockStart> all_block_starts(const interop::MarchView& view);

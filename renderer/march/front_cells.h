@@ -19,10 +19,15 @@ struct Box {
 /// How far rays from an eye go down the tree (shows() in descend.glsl).
 struct ConeOfSight {
     glm::dvec3 eye{0.0};
-    double width = 0.0;  ///< of a pixel's cone at distance 1
+    double width = 0.0;       ///< of a pixel's cone at distance 1
+    bool is_blended = false;  ///< rays see mips of a brick too, and not all of a tile by the same one
 
     [[nodiscard]] double distance_to(const Box& box) const {
         return glm::length(glm::max(glm::max(box.low - eye, eye - box.high), glm::dvec3(0.0)));
+    }
+    /// To its farthest corner.
+    [[nodiscard]] double distance_past(const Box& box) const {
+        return glm::length(glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye)));
     }
 };
 
@@ -31,7 +36,7 @@ struct ConeOfSight {
 /// for which see(Box) is false are left out.
 ///
 /// What is empty here is so at coarser levels too: a brick's voxels are never larger than its tile's
-/// children.
+/// children. Its coarsest mip's may be; then the tile is taken whole.
 template <typename See, typename Add>
 class FrontCells {
 public:
@@ -47,17 +52,22 @@ public:
         // Where rounding decides, further down: that leaves nothing out.
         const bool goes_down =
             tile.level < shape_.max_level && voxel_side > 0.999 * cone_.width * cone_.distance_to(box);
+        // Blended, rays may see the near end of a tile by its children and the far end by itself.
+        const bool shows_itself =
+            !goes_down || (cone_.is_blended && voxel_side < 1.001 * cone_.width * cone_.distance_past(box));
+        const bool holds_mips = !cone_.is_blended || shape_.n * shape_.n <= shape_.m;
         const bool knows_children = (node.child_mask.x | node.child_mask.y) != 0;
         // A tile without its brick is asked for, or stood in for, as a whole; one that nothing finer adds to
         // is shown as a whole.
         const bool has_brick = (node.brick & NODE_SLOT) != 0;
-        if ((node.brick & NODE_FINAL) != 0 || (!goes_down && (!has_brick || !knows_children))) {
+        if ((node.brick & NODE_FINAL) != 0 ||
+            (shows_itself && (!has_brick || !knows_children || !holds_mips))) {
             add_(box);
             return;
         }
         for (int child = 0; child < shape_.child_count(); ++child) {
             if (!may_hold(node.child_mask, shape_.n, child)) continue;
-            if (goes_down && node.children != 0)
+            if (!shows_itself && node.children != 0)
                 walk(node.children + std::uint32_t(child));
             else
                 add_(box_of(child_of(tile, shape_.n, child)));

@@ -93,10 +93,13 @@ const gl::Program& Marcher::primary_program(PassKind kind) {
     const int show_tree = show_tree_ ? 1 : 0;
     const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
     const int proxy = mix_.proxy_span != 0 ? 1 : 0;
-    gl::Program& program = primary_[std::size_t(progressive + 2 * show_tree + 4 * meshes + 8 * proxy)];
+    const int blended = blended_ ? 1 : 0;
+    gl::Program& program =
+        primary_[std::size_t(progressive + 2 * show_tree + 4 * meshes + 8 * proxy + 16 * blended)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
+        defines.emplace_back("BLENDED", std::to_string(blended));
         defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
         if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
         if (proxy != 0) defines.emplace_back("WITH_PROXY", "");
@@ -109,9 +112,11 @@ const gl::Program& Marcher::shadow_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
     const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
     const int soft = shadow_rays_ > 1 ? 1 : 0;
-    gl::Program& program = shadow_[std::size_t(progressive + 2 * meshes + 4 * soft)];
+    const int blended = blended_ ? 1 : 0;
+    gl::Program& program = shadow_[std::size_t(progressive + 2 * meshes + 4 * soft + 8 * blended)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
+        defines.emplace_back("BLENDED", std::to_string(blended));
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
         if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
         if (soft != 0) defines.emplace_back("SOFT_SHADOWS", "");
@@ -128,8 +133,9 @@ int Marcher::band_rows(int width, int height) {
 }
 
 void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool,
-                          const MarchMix& mix) {
+                          bool is_blended, const MarchMix& mix) {
     mix_ = mix;
+    blended_ = is_blended;
     size_ = glm::ivec2(view.size_shadow.x, view.band.y);
     const auto pixels = std::size_t(size_.x) * std::size_t(size_.y);
     if (pixels > capacity_) {
@@ -154,7 +160,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     interop::MarchView marched = view;
     // They are told for one direction.
     if (options_.block_starts && view.size_shadow.z != 0 && view.light.w == 0.0F && shadow_rays_ == 1) {
-        const ShadowEnds ends = shadow_ends(view, tree);
+        const ShadowEnds ends = shadow_ends(view, tree, is_blended);
         shadow_ends_.write(0, ends.ends.data(), ends.ends.size() * sizeof(float));
         marched.shadow_across = ends.across;
         marched.shadow_down = ends.down;
@@ -162,7 +168,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     }
     view_.write(0, &marched, sizeof(marched));
     std::vector<interop::BlockStart> starts =
-        options_.block_starts ? block_starts(view, tree) : all_block_starts(view);
+        options_.block_starts ? block_starts(view, tree, is_blended) : all_block_starts(view);
     if (mix.mesh_nearest != 0) add_empty_blocks(view, starts);
     start_count_ = starts.size();
     first_rays_ = pixels_of(starts, size_);
@@ -325,7 +331,7 @@ void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool
     program.set("pass_number", round);
     program.set("query_capacity", query_capacity_);
     program.set("usage_query_offset", query_bits_offset_);
-    program.set("pool_slots", pool.slots());
+    program.set("pool_levels", pool.levels());
     set_mix(program);
     program.use();
     gl::dispatch_threads(dispatch.rays, group_size);

@@ -59,7 +59,7 @@ struct PassResult {
 struct MarchMix {
     GLuint mesh_nearest = 0;  ///< 0: no meshes
     GLuint mesh_surface = 0;
-    int mesh_first_row = 0;     ///< of the picture, in those
+    int mesh_first_row = 0;  ///< of the picture, in those
     bool voxels_hidden = false;
     bool mesh_shadows = false;  ///< voxels cast shadows on meshes
     float mesh_own_height =
@@ -91,7 +91,8 @@ public:
     [[nodiscard]] static int band_rows(int width, int height);
 
     /// Sets the frame, or a band of it (`view.band`); buffers grow when the bands do.
-    void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool,
+    /// @param is_blended  rays see two mips at once (LevelOfDetail::blended); the pool's bricks have mips.
+    void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool, bool is_blended,
                      const MarchMix& mix = {});
 
     /// For trees with windows: before each pass, since tiles come and go.
@@ -134,8 +135,9 @@ private:
     void bind_mix() const;
     void set_mix(const gl::Program& program) const;
 
-    std::array<gl::Program, 16> primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * meshes + 8 * proxy
-    std::array<gl::Program, 8> shadow_;    ///< PROGRESSIVE + 2 * meshes + 4 * soft
+    std::array<gl::Program, 32>
+        primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * meshes + 8 * proxy + 16 * BLENDED
+    std::array<gl::Program, 16> shadow_;  ///< PROGRESSIVE + 2 * meshes + 4 * soft + 8 * BLENDED
     gl::Buffer view_;
     gl::Buffer windows_;  ///< empty where the tree has none
     gl::Buffer shadow_ends_;
@@ -163,6 +165,7 @@ private:
     bool urgent_told_ = true;  // the last pass left queries by rank
     bool show_tree_ = false;
     int shadow_rays_ = 1;  // of a pixel
+    bool blended_ = false;
     int pauses_ = 0;     // passes in a row in which rays only paused
     int list_side_ = 0;  // which half of the lists is read
 };

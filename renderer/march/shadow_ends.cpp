@@ -22,12 +22,12 @@ double largest_voxel(const TreeShape& shape, const ConeOfSight& cone, double wid
     double side = root_side / shape.m;
     for (int level = 0; level < shape.max_level && side > width * farthest; ++level)
         side /= shape.n;
-    return side;
+    return cone.is_blended ? side * shape.n : side;  // of the coarsest mip
 }
 
 }  // namespace
 
-ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree) {
+ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree, bool is_blended) {
     const TreeShape& shape = tree.shape();
     const double root_side = double(shape.resolution());
     const dvec3 to_light(view.light);
@@ -43,7 +43,8 @@ ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree) {
     result.ends.assign(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE, -1e30F);
 
     const dvec3 forward(view.forward);
-    const ConeOfSight cone{dvec3(view.eye) - double(view.forward.w) * forward, double(view.eye.w)};
+    const ConeOfSight cone{dvec3(view.eye) - double(view.forward.w) * forward, double(view.eye.w),
+                           is_blended};
     const double voxel = largest_voxel(shape, cone, cone.width * std::max(double(view.background.w), 1.0));
     const double slack = place_margin * root_side;
     const auto add = [&](const Box& box) {

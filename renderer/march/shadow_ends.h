@@ -21,7 +21,8 @@ struct ShadowEnds {
 };
 
 /// For rays from what the view shows to its light. Conservative, like block_starts(): no shadow changes.
-/// @param view  its light is directional.
-[[nodiscard]] ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree);
+/// @param view        its light is directional.
+/// @param is_blended  rays see mips too.
+[[nodiscard]] ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree, bool is_blended);
 
 }  // namespace cairn::renderer

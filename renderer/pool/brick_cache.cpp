@@ -88,7 +88,7 @@ void BrickCache::start_reading(Reading& reading, const Tree::Evicted& evicted) c
     glBindBuffer(GL_PIXEL_PACK_BUFFER, reading.buffer.id());
     std::size_t offset = 0;
     for (const BrickPool::Layer& layer : layers_) {
-        const glm::ivec3 low = pool_.slot_place(evicted.slot) * layer.side;
+        const glm::ivec3 low = pool_.first_texel(evicted.slot, layer.mip);
         glGetTextureSubImage(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
                              layer.format, layer.type, GLsizei(layer_bytes(layer)), as_pointer(offset));
         offset = aligned(offset + layer_bytes(layer));
@@ -138,7 +138,7 @@ bool BrickCache::restore(const Tile& tile, int slot) {
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, writing_.id());
     std::size_t offset = 0;
     for (const BrickPool::Layer& layer : layers_) {
-        const glm::ivec3 low = pool_.slot_place(slot) * layer.side;
+        const glm::ivec3 low = pool_.first_texel(slot, layer.mip);
         glTextureSubImage3D(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
                             layer.format, layer.type, as_pointer(offset));
         offset = aligned(offset + layer_bytes(layer));

@@ -42,54 +42,90 @@ glm::ivec3 box_of(int count, int most) {
     return best;
 }
 
+/// Where the mips of as many slots as `slots` has lie (BrickPool::levels), and the size of it all in texels.
+struct Layout {
+    std::vector<glm::ivec4> levels;
+    glm::ivec3 size{0};
+
+    [[nodiscard]] std::size_t texels() const {
+        return std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z);
+    }
+};
+
+Layout lay_out(const TreeShape& shape, const glm::ivec3& slots) {
+    Layout layout;
+    layout.size = glm::ivec3(slots.x, slots.y, 0) * shape.mip_side(0);
+    const int count = slots.x * slots.y * slots.z;
+    for (int mip = 0; mip <= shape.mips; ++mip) {
+        const int side = shape.mip_side(mip);
+        const glm::ivec2 row(layout.size.x / side, layout.size.y / side);
+        layout.levels.emplace_back(row, layout.size.z, side);
+        layout.size.z += (count + row.x * row.y - 1) / (row.x * row.y) * side;
+    }
+    return layout;
+}
+
 }  // namespace
 
 BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t bytes)
-    : channels_(channels), side_(shape.m + 2) {
-    const auto blocks = std::size_t(shape.blocks());
-    const std::size_t mask_words = blocks + (blocks + 63) / 64;
-    const std::size_t texels = std::size_t(side_) * std::size_t(side_) * std::size_t(side_);
+    : channels_(channels), mask_words_(std::size_t(shape.mask_words())) {
+    const std::size_t mask_bytes = mask_words_ * 8;
     const std::size_t texel_bytes = (channels.color ? 4U : 1U) + (channels.normal ? 4U : 0U);
-    const std::size_t slot_bytes = texels * texel_bytes + mask_words * 8;
-    mask_words_ = mask_words;
+    auto bytes_of = [&](const Layout& layout, int slots) {
+        return layout.texels() * texel_bytes + std::size_t(slots) * mask_bytes;
+    };
     const gl::Limits limits = gl::query_limits();
-    const int most_a_side = limits.texture_3d_size / side_;
-    const std::size_t most_masks =
-        std::min(limits.texture_buffer_texels, limits.shader_storage_bytes / 8) / mask_words;
-    const std::size_t most = std::min<std::size_t>({bytes / slot_bytes, most_masks, 1U << 22U});
-    if (most == 0) {
-        throw Error(Fault::usage, "brick pool",
-                    fmt::format("{:.2f} MiB hold no brick of {}^3 voxels", double(bytes) / 0x1p20, shape.m),
-                    fmt::format("give it at least {:.2f} MiB",
-                                std::ceil(double(slot_bytes) / 0x1p20 * 100.0) / 100.0));
+    const std::size_t least = bytes_of(lay_out(shape, glm::ivec3(1)), 1);
+    if (bytes < least) {
+        throw Error(
+            Fault::usage, "brick pool",
+            fmt::format("{:.2f} MiB hold no brick of {}^3 voxels", double(bytes) / 0x1p20, shape.m),
+            fmt::format("give it at least {:.2f} MiB", std::ceil(double(least) / 0x1p20 * 100.0) / 100.0));
     }
-    slots_ = box_of(int(most), most_a_side);
-    slot_count_ = slots_.x * slots_.y * slots_.z;
-
-    const glm::ivec3 size = slots_ * side_;
-    color_ = make_texture(channels.color ? GL_RGBA8 : GL_R8, size, GL_NEAREST);
-    if (channels.normal) normal_ = make_texture(GL_RGB10_A2, size, GL_NEAREST);
-    masks_ = gl::Buffer(std::size_t(slot_count_) * mask_words * 8, "brick masks");
+    const std::size_t side = std::size_t(shape.mip_side(0));
+    const std::size_t most_masks =
+        std::min(limits.texture_buffer_texels, limits.shader_storage_bytes / 8) * 8 / mask_bytes;
+    std::size_t most = std::min<std::size_t>(
+        {bytes / (side * side * side * texel_bytes + mask_bytes), most_masks, std::size_t(1) << 22U});
+    // Mips lie in whole layers: what they take is known only when they lie there.
+    Layout layout;
+    for (;; most -= std::max<std::size_t>(most / 64, 1)) {
+        slots_ = box_of(int(most), limits.texture_3d_size / int(side));
+        slot_count_ = slots_.x * slots_.y * slots_.z;
+        layout = lay_out(shape, slots_);
+        if (layout.size.z <= limits.texture_3d_size && bytes_of(layout, slot_count_) <= bytes) break;
+    }
+    levels_ = layout.levels;
+    color_ = make_texture(channels.color ? GL_RGBA8 : GL_R8, layout.size, GL_NEAREST);
+    if (channels.normal) normal_ = make_texture(GL_RGB10_A2, layout.size, GL_NEAREST);
+    masks_ = gl::Buffer(std::size_t(slot_count_) * mask_bytes, "brick masks");
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
     mask_texture_ = gl::TextureHandle(id);
     glTextureBuffer(id, GL_RG32UI, masks_.id());
-    size_bytes_ = std::size_t(slot_count_) * slot_bytes;
+    size_bytes_ = bytes_of(layout, slot_count_);
 }
 
-glm::ivec3 BrickPool::slot_place(int slot) const {
-    return {slot % slots_.x, slot / slots_.x % slots_.y, slot / (slots_.x * slots_.y)};
-}
-
-glm::ivec3 BrickPool::first_texel(int slot) const {
-    return slot_place(slot) * side_;
+glm::ivec3 BrickPool::first_texel(int slot, int mip) const {
+    const glm::ivec4& level = levels_[std::size_t(mip)];
+    return glm::ivec3(slot % level.x, slot / level.x % level.y, slot / (level.x * level.y)) * level.w +
+           glm::ivec3(0, 0, level.z);
 }
 
 std::vector<BrickPool::Layer> BrickPool::layers() const {
-    const Layer color = channels_.color ? Layer{color_.id(), GL_RGBA, GL_UNSIGNED_BYTE, side_, 4}
-                                        : Layer{color_.id(), GL_RED, GL_UNSIGNED_BYTE, side_, 1};
-    if (!channels_.normal) return {color};
-    return {color, {normal_.id(), GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, side_, 4}};
+    std::vector<Layer> layers;
+    for (std::size_t mip = 0; mip < levels_.size(); ++mip) {
+        Layer layer{color_.id(), GL_RED, GL_UNSIGNED_BYTE, int(mip), levels_[mip].w, 1};
+        if (channels_.color) {
+            layer.format = GL_RGBA;
+            layer.texel_bytes = 4;
+        }
+        layers.push_back(layer);
+        if (!channels_.normal) continue;
+        layers.push_back(
+            {normal_.id(), GL_RGBA, GL_UNSIGNED_INT_2_10_10_10_REV, int(mip), levels_[mip].w, 4});
+    }
+    return layers;
 }
 
 void BrickPool::bind_for_reading() const {
@@ -109,11 +145,12 @@ void BrickPool::bind_for_writing() const {
 void BrickPool::upload(int slot, const gl::Buffer& texels, std::size_t offset_bytes,
                        std::span<const std::uint64_t> masks) const {
     const glm::ivec3 texel = first_texel(slot);
+    const int side = levels_.front().w;
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, texels.id());
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     // With a buffer bound, the pointer is an offset in it.
-    glTextureSubImage3D(color_.id(), 0, texel.x, texel.y, texel.z, side_, side_, side_, GL_RED,
-                        GL_UNSIGNED_BYTE, reinterpret_cast<const void*>(offset_bytes));
+    glTextureSubImage3D(color_.id(), 0, texel.x, texel.y, texel.z, side, side, side, GL_RED, GL_UNSIGNED_BYTE,
+                        reinterpret_cast<const void*>(offset_bytes));
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     glNamedBufferSubData(masks_.id(), GLintptr(std::size_t(slot) * mask_words_ * 8),

@@ -21,7 +21,7 @@ struct Channels {
 
 /// The bounded store of bricks on the GPU (Crassin et al. 2008, section 4.2).
 ///
-/// A slot holds, at one address in each of these:
+/// A slot holds, at one address in each of these, a brick and its mip levels:
 ///     color    3D texture, (M + 2)^3 texels a slot: RGBA8 (square root of linear colour times coverage,
 ///     coverage),
 ///              or R8 coverage (of a volume: density) alone when the scene has no colour
@@ -30,6 +30,12 @@ struct Channels {
 ///     word a block:
 ///              which of its voxels are occupied; bit x + b (y + b z). b = TreeShape::block_side(): 4, or 3
 ///              where n = 3
+///
+/// Mip k has (M / 2^k + 2)^3 texels a slot, border included, and lies in layers of its own behind those of
+/// mip k - 1: a sibling pool with as many slots, in rows of its own length. So a slot's number is its address
+/// in all of them (section 4.2), and one texture, not one a mip, has to be bound. The blocks of mip k follow
+/// those of mip k - 1; the summary tells of all. Mips add an eighth and a bit for the border: for M = 16 and
+/// N = 4 a fifth.
 class BrickPool {
 public:
     /// As many slots as fit in `bytes`. @throws Error (Fault::usage) when not one does, naming the least.
@@ -39,28 +45,30 @@ public:
 
     [[nodiscard]] int slot_count() const { return slot_count_; }
     [[nodiscard]] std::size_t size_bytes() const { return size_bytes_; }
+    /// Of mip 0, along each axis.
     [[nodiscard]] glm::ivec3 slots() const { return slots_; }
-    [[nodiscard]] glm::ivec3 first_texel(int slot) const;
+    [[nodiscard]] glm::ivec3 first_texel(int slot, int mip = 0) const;
+    /// For shaders/pool/brick_levels.glsl, of each mip: slots along x and y, first layer, texels of a slot's
+    /// side.
+    [[nodiscard]] const std::vector<glm::ivec4>& levels() const { return levels_; }
     [[nodiscard]] bool has_color() const { return channels_.color; }
     /// 64-bit words of masks a slot.
     [[nodiscard]] std::size_t mask_words() const { return mask_words_; }
 
-    /// A texture of the pool: every slot has a cube of `side` texels in it, at slot_place() * side.
+    /// What every slot has of a mip in a texture of the pool: a cube of `side` texels at first_texel().
     struct Layer {
         GLuint texture = 0;
         GLenum format = 0;  ///< as pixels are transferred, bit for bit
         GLenum type = 0;
+        int mip = 0;
         int side = 0;
         int texel_bytes = 0;
     };
     /// All that a slot holds, but for its masks.
     [[nodiscard]] std::vector<Layer> layers() const;
-    [[nodiscard]] glm::ivec3 slot_place(int slot) const;
     /// The masks of slot s start at byte s * mask_bytes_a_slot().
     [[nodiscard]] const gl::Buffer& masks() const { return masks_; }
-    [[nodiscard]] std::size_t mask_bytes_a_slot() const {
-        return masks_.size_bytes() / std::size_t(slot_count_);
-    }
+    [[nodiscard]] std::size_t mask_bytes_a_slot() const { return mask_words_ * 8; }
 
     /// For the marcher: sampled textures. For the producer: images and the mask buffer.
     void bind_for_reading() const;
@@ -77,8 +85,8 @@ private:
     std::size_t mask_words_ = 0;
     int slot_count_ = 0;
     std::size_t size_bytes_ = 0;
-    int side_ = 0;
     glm::ivec3 slots_{0};
+    std::vector<glm::ivec4> levels_;
     gl::TextureHandle color_;
     gl::TextureHandle normal_;
     gl::TextureHandle mask_texture_;

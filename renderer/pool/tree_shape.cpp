@@ -15,6 +15,7 @@ constexpr int most_voxel_bits = 60;
 gl::Defines TreeShape::defines(bool has_color) const {
     return {{"TREE_N", std::to_string(n)},
             {"BRICK_M", std::to_string(m)},
+            {"BRICK_MIPS", std::to_string(mips)},
             {"MAX_LEVEL", std::to_string(has_windows() ? levels_in_window() : max_level)},
             {"WINDOWS", has_windows() ? "1" : "0"},
             {"HAS_COLOR", has_color ? "1" : "0"}};
@@ -58,14 +59,19 @@ void check_factors(int n, int m) {
 
 }  // namespace
 
-TreeShape make_tree_shape(int n, int m, int max_resolution) {
+TreeShape make_tree_shape(int n, int m, int max_resolution, bool with_mips) {
     check_factors(n, m);
+    if (with_mips && n == 3) {
+        throw Error(Fault::usage, "tree", "bricks have no mip levels with N = 3",
+                    "choose N = 2, 4 or 8, or leave the mips out");
+    }
     if (max_resolution < m || max_resolution > 1 << MAX_RESOLUTION_BITS) {
         throw Error(Fault::usage, "maximum resolution",
                     fmt::format("{} is not between {} (one brick) and {}", max_resolution, m,
                                 1 << MAX_RESOLUTION_BITS));
     }
     TreeShape shape{.n = n, .m = m, .max_level = 0};
+    shape.mips = with_mips ? shape.n_shift() : 0;
     while (std::int64_t(shape.resolution()) * n <= max_resolution)
         ++shape.max_level;
     return shape;

@@ -16,6 +16,7 @@ struct TreeShape {
     int n = 4;   ///< children an axis: 2, 3, 4 or 8
     int m = 16;  ///< voxels of a brick an axis, border not counted: 8, 16, 32 or 64; 27 or 81 where n = 3
     int max_level = 4;  ///< level of the finest tiles; the root is level 0
+    int mips = 0;       ///< mip levels of a brick beside its own voxels, each twice as coarse: 0 or n_shift()
     /// Where rays go through windows, log2 of a tile's side in voxels there, at most: [m_shift(),
     /// WINDOW_TILE_BITS].
     int window_tile_bits = WINDOW_TILE_BITS;
@@ -26,6 +27,8 @@ struct TreeShape {
     [[nodiscard]] int m_shift() const {
         return m == 8 || m == 27 ? 3 : m == 16 || m == 81 ? 4 : m == 32 ? 5 : 6;
     }
+    /// Voxels of a mip along an axis of a brick, border included.
+    [[nodiscard]] int mip_side(int mip) const { return (m >> mip) + 2; }
     [[nodiscard]] int child_count() const { return n * n * n; }
     /// Voxels across the root cube at a level: log2. Not where n = 3.
     [[nodiscard]] int voxel_level(int level) const { return m_shift() + n_shift() * level; }
@@ -38,7 +41,18 @@ struct TreeShape {
     [[nodiscard]] int voxel_side(int level) const;
     /// Side of the cube of voxels that one word of a brick's masks tells of.
     [[nodiscard]] int block_side() const { return n == 3 ? 3 : 4; }
-    [[nodiscard]] int blocks() const { return m / block_side() * (m / block_side()) * (m / block_side()); }
+    /// Such cubes in a mip; where it has fewer voxels, one.
+    [[nodiscard]] int blocks(int mip = 0) const {
+        const int across = (m >> mip) > block_side() ? (m >> mip) / block_side() : 1;
+        return across * across * across;
+    }
+    /// 64-bit words of a brick's masks: the summary, then a word a block, mip after mip.
+    [[nodiscard]] int mask_words() const {
+        int words = (blocks() + 63) / 64;
+        for (int mip = 0; mip <= mips; ++mip)
+            words += blocks(mip);
+        return words;
+    }
     /// Too many voxels for a ray to count: it goes through windows (renderer/march/windows.h), and
     /// resolution() has no meaning. Never where n = 3.
     [[nodiscard]] bool has_windows() const;
@@ -48,8 +62,10 @@ struct TreeShape {
 };
 
 /// The deepest shape whose voxels do not pass `max_resolution` across the root cube.
+/// @param with_mips  bricks hold mip levels up to the size of their parent's voxels. Not with n = 3, whose
+/// voxels are not cut in halves.
 /// @throws Error (Fault::usage) when n, m or the resolution cannot work; says which values can.
-[[nodiscard]] TreeShape make_tree_shape(int n, int m, int max_resolution);
+[[nodiscard]] TreeShape make_tree_shape(int n, int m, int max_resolution, bool with_mips = false);
 
 /// A shape of any depth, whose finest voxels may be 2^-60 of the root cube.
 /// @throws Error (Fault::usage) likewise.

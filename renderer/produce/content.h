@@ -27,6 +27,8 @@ public:
     [[nodiscard]] virtual bool has_color() const = 0;
     [[nodiscard]] virtual Channels channels() const { return {.color = has_color()}; }
     [[nodiscard]] virtual glm::vec3 uniform_color() const = 0;
+    /// Does the producer fill the mip levels of bricks (TreeShape::mips)?
+    [[nodiscard]] virtual bool fills_mips() const { return false; }
     /// May the producer find tiles constant and not empty? Then the tree keeps their values, and rays march
     /// them.
     [[nodiscard]] virtual bool has_constant() const { return false; }

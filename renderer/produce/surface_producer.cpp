@@ -18,15 +18,24 @@ constexpr std::size_t pair_capacity = std::size_t(1) << 18U;
 constexpr int turns_a_pair = 30000;
 constexpr unsigned group_size = 64;
 
-std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
-    const auto side = std::size_t(shape.m) + 2;
-    return side * side * side * (has_color ? 9 : 6) * sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
+/// Of all its mips, border included.
+std::size_t voxels_a_brick(const TreeShape& shape) {
+    std::size_t voxels = 0;
+    for (int mip = 0; mip <= shape.mips; ++mip) {
+        const auto side = std::size_t(shape.mip_side(mip));
+        voxels += side * side * side;
+    }
+    return voxels;
 }
 
-/// The rows that lattice coordinates lie in, of voxels of that side: rounded down.
-glm::ivec2 row_of(const glm::ivec2& place, int voxel) {
-    const glm::ivec2 cut = place / voxel;
-    return cut - glm::ivec2(glm::lessThan(place, cut * voxel));
+std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
+    return voxels_a_brick(shape) * (has_color ? 9 : 6) * sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
+}
+
+/// The voxels of that side that lattice coordinates lie in: rounded down.
+glm::ivec3 voxel_of(const glm::ivec3& place, int voxel) {
+    const glm::ivec3 cut = place / voxel;
+    return cut - glm::ivec3(glm::lessThan(place, cut * voxel));
 }
 
 }  // namespace
@@ -41,19 +50,18 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     const std::size_t brick_bytes = scratch_bytes_a_brick(shape, surface.has_color);
     batch_ = int(std::clamp<std::size_t>(scratch_budget_bytes / brick_bytes, 1, 0xFFFF));
     gl::Defines defines = shape.defines(surface.has_color);
-    masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
     resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
     defines.emplace_back("TELL_EMPTY", tell_empty_ ? "1" : "0");
-    summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
     defines.emplace_back("HAS_MASK", surface.has_mask ? "1" : "0");
+    masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
+    summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
     splat_ = gl::build_compute(shaders, "produce/splat.comp.glsl", defines);
 
     scratch_ = gl::Buffer(std::size_t(batch_) * brick_bytes, "brick scratch");
     scratch_.fill(0);
     // Masks of all voxels of a batch stand before their sums (scratch.glsl).
-    const std::size_t side = std::size_t(shape.m) + 2;
     for (gl::Program* program : {&splat_, &resolve_})
-        program->set("sums_offset", unsigned(std::size_t(batch_) * side * side * side * 2));
+        program->set("sums_offset", unsigned(std::size_t(batch_) * voxels_a_brick(shape) * 2));
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
     if (tell_empty_)
         found_ = gl::Buffer(std::size_t(batch_) * sizeof(std::uint32_t), "bricks that hold anything");
@@ -77,27 +85,35 @@ std::vector<Produced> SurfaceProducer::produce(std::span<const BrickRequest> req
 void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
     for (auto& list : pairs_)
         list.clear();
-    const int side = shape_.m + 2;
-    const int rows = std::max(1, turns_a_pair / (side * (surface_.has_mask ? 81 : 17)));
-    const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
     for (std::size_t i = 0; i < requests.size(); ++i) {
         const Tile& tile = requests[i].tile;
-        const int voxel = shape_.voxel_side(tile.level);
-        const glm::ivec2 low = glm::ivec2(tile.position.y, tile.position.z) * shape_.m - 1;  // of the border
-        for (const std::uint32_t triangle : triangles_of(tile, shape_, lists_, listed_)) {
-            // Row r is touched when [r, r + 1] meets the triangle's extent: one more on each side of whole
-            // numbers.
-            const voxelizer::TriangleIndex::Box& box = lists_.box(triangle);
-            const glm::ivec2 first = glm::max(row_of({box.low.y - 1, box.low.z - 1}, voxel) - low, 0);
-            const glm::ivec2 last = glm::min(row_of({box.high.y, box.high.z}, voxel) - low, shape_.m + 1);
-            for (int z = first.y; z <= last.y; z += step.y) {
-                for (int y = first.x; y <= last.x; y += step.x) {
-                    const auto y_count = std::uint32_t(std::min(step.x, last.x - y + 1));
-                    const auto z_count = std::uint32_t(std::min(step.y, last.y - z + 1));
-                    pairs_[triangle / SURFACE_CHUNK_TRIANGLES].push_back(
-                        {triangle % SURFACE_CHUNK_TRIANGLES, std::uint32_t(i),
-                         std::uint32_t(y) | y_count << 8U | std::uint32_t(z) << 16U | z_count << 24U});
-                }
+        const std::span<const std::uint32_t> triangles = triangles_of(tile, shape_, lists_, listed_);
+        for (int mip = 0; mip <= shape_.mips; ++mip)
+            gather_pairs_of_mip(tile, std::uint32_t(i), mip, triangles);
+    }
+}
+
+void SurfaceProducer::gather_pairs_of_mip(const Tile& tile, std::uint32_t number, int mip,
+                                          std::span<const std::uint32_t> triangles) {
+    const int side = shape_.mip_side(mip);
+    const int rows = std::max(1, turns_a_pair / (side * (surface_.has_mask ? 81 : 17)));
+    const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
+    const int voxel = shape_.voxel_side(tile.level) << mip;
+    const glm::ivec3 low = glm::ivec3(tile.position) * (shape_.m >> mip) - 1;  // of the border
+    for (const std::uint32_t triangle : triangles) {
+        // Row r is touched when [r, r + 1] meets the triangle's extent: one more on each side of whole
+        // numbers.
+        const voxelizer::TriangleIndex::Box& box = lists_.box(triangle);
+        const glm::ivec3 first = glm::max(voxel_of(box.low - 1, voxel) - low, 0);
+        const glm::ivec3 last = glm::min(voxel_of(box.high, voxel) - low, side - 1);
+        if (first.x > last.x) continue;  // near the border of a coarser mip alone
+        for (int z = first.z; z <= last.z; z += step.y) {
+            for (int y = first.y; y <= last.y; y += step.x) {
+                const auto y_count = std::uint32_t(std::min(step.x, last.y - y + 1));
+                const auto z_count = std::uint32_t(std::min(step.y, last.z - z + 1));
+                pairs_[triangle / SURFACE_CHUNK_TRIANGLES].push_back(
+                    {triangle % SURFACE_CHUNK_TRIANGLES, number | std::uint32_t(mip) << 16U,
+                     std::uint32_t(y) | y_count << 8U | std::uint32_t(z) << 16U | z_count << 24U});
             }
         }
     }
@@ -126,7 +142,7 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
         const int side = shape_.voxel_side(request.tile.level);
         const int size = shape_.cell_base() == 2 ? int(std::bit_width(unsigned(side))) - 1 : side;
         tiles.push_back({glm::ivec4(glm::ivec3(request.tile.position) * shape_.m, size),
-                         glm::ivec4(pool.first_texel(request.slot), request.slot)});
+                         glm::ivec4(request.slot, 0, 0, 0)});
     }
     tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::BrickTile));
 
@@ -140,8 +156,6 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
 /// Turns what was gathered for the batch into bricks.
 void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
     const auto count = unsigned(tile_count);
-    const auto blocks = std::size_t(shape_.blocks());
-    const auto side = std::size_t(shape_.m) + 2;
     tiles_.bind_storage(SSBO_BRICK_TILES);
     scratch_.bind_storage(SSBO_BRICK_SCRATCH);
     pool.bind_for_writing();
@@ -155,11 +169,15 @@ void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
         program.set("tile_count", count);
         gl::dispatch_threads(threads, group_size);
     };
-    run(masks_, count * blocks);
-    run(summarize_, count * ((blocks + 63) / 64));
+    for (int mip = 0; mip <= shape_.mips; ++mip) {
+        masks_.set("mip", mip);
+        run(masks_, count * std::size_t(shape_.blocks(mip)));
+    }
+    run(summarize_, count * ((std::size_t(shape_.blocks()) + 63) / 64));
     glMemoryBarrier(
         GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // rays of an earlier pass may still read evicted slots
-    run(resolve_, count * side * side * side);
+    resolve_.set("pool_levels", pool.levels());
+    run(resolve_, count * voxels_a_brick(shape_));
     // The next batch reuses the scratch; rays fetch the texels.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -14,7 +14,8 @@ namespace cairn::renderer {
 
 /// Fills bricks by voxelizing the tile's region four times finer, from the triangles of the tile's own list:
 /// coverage from the finer bits, base colour and normal as means over them. All on the GPU, many bricks at
-/// once.
+/// once. Each mip is voxelized like a brick of its own, so that it equals the matching part of the parent's
+/// brick.
 class SurfaceProducer final : public Producer {
 public:
     /// Refers to the surface and the lists, which must outlive it.
@@ -27,6 +28,8 @@ private:
     void produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool);
     void pack(std::size_t tile_count, const BrickPool& pool);
     void gather_pairs(std::span<const BrickRequest> requests);
+    void gather_pairs_of_mip(const Tile& tile, std::uint32_t number, int mip,
+                             std::span<const std::uint32_t> triangles);
     void splat(std::size_t chunk);
 
     TreeShape shape_;

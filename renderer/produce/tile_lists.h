@@ -19,15 +19,15 @@ constexpr std::size_t tile_list_limit = std::size_t(64) << 20U;
     return shape.cell_base() == 2 ? shape.n_shift() : 2;
 }
 
-/// The index whose cells are the tiles of a tree, each list with what touches one voxel of border. With n =
-/// 3, whose tiles are no cells, lists have no border.
+/// The index whose cells are the tiles of a tree, each list with what touches one voxel of border: of the
+/// coarsest mip. With n = 3, whose tiles are no cells, lists have no border.
 [[nodiscard]] inline voxelizer::TriangleIndex tile_lists(const TreeShape& shape,
                                                          const voxelizer::Surface& surface,
                                                          std::size_t held_limit = tile_list_limit) {
     voxelizer::TriangleIndexOptions options;
     options.level_step = tile_list_step(shape);
     options.held_limit = held_limit;
-    if (shape.cell_base() == 2) options.border_shift = shape.m_shift();
+    if (shape.cell_base() == 2) options.border_shift = shape.m_shift() - shape.mips;
     return voxelizer::TriangleIndex(surface, options);
 }
 

@@ -86,17 +86,17 @@ struct NodeEntry {
 struct BrickTile {
     ivec4 low_size;    // xyz: low corner, in voxels of the tile's level, without the border; w: log2 of a voxel's side
                        // in lattice units; the side itself where N = 3
-    ivec4 slot_texel;  // xyz: first texel of the slot in the pool's textures (border included); w: slot
+    ivec4 slot;        // x: slot; the rest is not used
 };
 // A tile of the fractal (renderer/produce/fractal_content.h) whose brick is being produced.
 struct FractalTile {
-    ivec4 slot_texel;  // as in BrickTile
+    ivec4 slot_texel;  // xyz: first texel of the slot in the pool's textures (border included); w: slot
     uvec4 neighbours;  // x: bit x + 3 (y + 3 z): the tile (x, y, z) - 1 away is not empty
 };
 struct BrickPair {
     uint triangle;     // local to the bound surface chunk
-    uint tile;         // in the batch
-    uint rows;         // first y | count of y << 8 | first z << 16 | count of z << 24, border included
+    uint tile_mip;     // in the batch | mip << 16
+    uint rows;         // of the mip: first y | count of y << 8 | first z << 16 | count of z << 24, border included
 };
 
 // All lengths in voxels of the finest level, positions from the root cube's low corner. Where rays go through windows,

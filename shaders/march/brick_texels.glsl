@@ -1,16 +1,13 @@
 // What a ray takes from the voxels of a brick.
 // What is left of `transmittance` behind a voxel. Voxels of one surface cover different parts of a pixel, so their
-// shares add up instead of multiplying; and from half covered on, no light may leak between them.
-float behind(float transmittance, float coverage) { return max(transmittance - min(2.0 * coverage, 1.0), 0.0); }
-
-ivec3 slot_texel(int slot) {
-    const ivec3 place = ivec3(slot % pool_slots.x, slot / pool_slots.x % pool_slots.y,
-                              slot / (pool_slots.x * pool_slots.y));
-    return place * (BRICK_M + 2);
+// shares add up instead of multiplying; and from half covered on, no light may leak between them. Between two mips
+// (march.glsl), `share` is the voxel's weight.
+float behind(float transmittance, float coverage, float share) {
+    return max(transmittance - share * min(2.0 * coverage, 1.0), 0.0);
 }
 
 float coverage_of(Sample s) {
-    const vec4 texel = texelFetch(brick_color, slot_texel(s.slot) + 1 + s.voxel, 0);
+    const vec4 texel = texelFetch(brick_color, s.texel + 1 + s.voxel, 0);
 #if HAS_COLOR
     return texel.a;
 #else
@@ -24,7 +21,7 @@ vec4 filtered(sampler3D texels, Sample s) {
     const vec3 place = s.middle + 0.5;  // from the border's first texel centre
     const vec3 low = floor(place);
     const vec3 f = place - low;
-    const ivec3 p = slot_texel(s.slot) + ivec3(low);
+    const ivec3 p = s.texel + ivec3(low);
     const vec4 y0 = mix(mix(texelFetch(texels, p, 0), texelFetch(texels, p + ivec3(1, 0, 0), 0), f.x),
                         mix(texelFetch(texels, p + ivec3(0, 1, 0), 0), texelFetch(texels, p + ivec3(1, 1, 0), 0), f.x),
                         f.y);

@@ -13,6 +13,9 @@
 #ifndef TILE_BLOCKS
 #define TILE_BLOCKS 0
 #endif
+#ifndef BLENDED
+#define BLENDED 0
+#endif
 
 layout(std140, binding = UBO_VIEW) uniform ViewBlock { MarchView view; };
 layout(std430, binding = SSBO_RAYS) buffer RayBlock { RayState rays[]; };
@@ -38,7 +41,6 @@ layout(binding = TEXTURE_BRICK_NORMAL) uniform sampler3D brick_normal;
 uniform uint pass_number;
 uniform uint query_capacity;      // at most QUERY_CAPACITY
 uniform uint usage_query_offset;  // word in usage[] where the query bits start
-uniform ivec3 pool_slots;         // slots along each axis of the pool's textures
 #if PROGRESSIVE
 uniform bool stand_in;            // the last pass of a frame: no ray may wait
 uniform uint entry_count;         // of the node pool

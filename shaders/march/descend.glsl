@@ -3,6 +3,7 @@
 struct Place {
     int slot;         // -1: none
     int tile_shift;   // log2 of the tile's side
+    int mip;          // of the brick: the one that is shown, or the finer of the two that are blended
 #if PROGRESSIVE
     int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in
 #endif
@@ -12,14 +13,29 @@ struct Place {
     uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
 };
 
-// Log2 of a voxel's side.
-int voxel_shift_of(Place place) {
+// Log2 of the side of the brick's own voxels.
+int own_shift_of(Place place) {
 #if PROGRESSIVE
     return place.brick_shift - M_SHIFT;
 #else
     return place.tile_shift - M_SHIFT;
 #endif
 }
+
+// Log2 of the side of the voxels that are shown (of the finer ones).
+int voxel_shift_of(Place place) { return own_shift_of(place) + place.mip; }
+
+#if BLENDED
+// Has the cone grown past what the place was chosen for? The root's coarsest mip goes on for ever.
+bool needs_coarser(Ray ray, Place place) {
+#if PROGRESSIVE
+    if (place.brick_shift != place.tile_shift) return false;  // it stands in
+#endif
+    const int own_shift = own_shift_of(place);
+    if (place.mip + 1 < BRICK_MIPS) return sees_mip(ray, own_shift, place.mip + 1);
+    return place.tile_shift < ROOT_SHIFT && sees_mip(ray, own_shift + N_SHIFT, 0);
+}
+#endif
 
 #define DESCENT_FOUND 0    // place holds a brick
 #define DESCENT_EMPTY 1    // nothing here: `empty_shift` is the side of the cell to step over
@@ -74,8 +90,11 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 #endif
 
 // Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far the whole
-// tile is away: whatever way the ray came and wherever it started, it sees the same.
+// tile is away, or the mip's cell around the voxel: whatever way the ray came and wherever it started, it sees the same.
 bool shows(Ray ray, int tile_shift) {
+#if BLENDED
+    return sees_mip(ray, tile_shift - M_SHIFT, 0);
+#else
     const float voxel_side = float(cell_side(tile_shift - M_SHIFT));
 #if RAYS_WIDEN
     const vec3 low = vec3(cell_low(ray.voxel, tile_shift)) - ray.origin;
@@ -83,6 +102,7 @@ bool shows(Ray ray, int tile_shift) {
     return voxel_side <= ray.cone_base + ray.cone_slope * length(away);
 #else
     return voxel_side <= ray.cone_base;
+#endif
 #endif
 }
 
@@ -110,6 +130,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     uvec4 node;
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
+    place.mip = 0;
 #if PROGRESSIVE
     place.brick_shift = ROOT_SHIFT;
 #endif
@@ -131,6 +152,13 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     node = texelFetch(nodes, int(entry));
 #else
     place.tile_shift = resume(ray, entry, node);
+#if BLENDED
+    // Around this voxel the ray may see a tile itself whose children it saw elsewhere: this one, or one above it.
+    if (place.tile_shift < ROOT_SHIFT && shows(ray, place.tile_shift)) {
+        forget_trail();
+        place.tile_shift = resume(ray, entry, node);
+    }
+#endif
 #if PROGRESSIVE
     place.brick_shift = place.tile_shift;
 #endif
@@ -185,6 +213,9 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #endif
         return DESCENT_MISSING;
     }
+#if BLENDED
+    while (place.mip + 1 < BRICK_MIPS && sees_mip(ray, place.tile_shift - M_SHIFT, place.mip + 1)) ++place.mip;
+#endif
     use_brick(place, brick_slot(node));
     return DESCENT_FOUND;
 }

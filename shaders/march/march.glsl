@@ -8,11 +8,12 @@
 // waiting for them; and when time is up (stand_in), what is missing is shown by the nearest ancestor that has a brick.
 //
 // With HAS_CONSTANT, tiles may hold one value that is not 0 (Crassin et al. 2008, section 4.2): the includer supplies
-// visit_constant() too. With HAS_FINAL, tiles may have nothing finer to show.
+// visit_constant() too. With HAS_FINAL, tiles may have nothing finer to show. With BLENDED, rays see two mips of a brick, whose
+// shares lead over from one size of voxels to the next (blend.glsl).
 //
 // Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth, or with WINDOWS that under a window's tiles), HAS_COLOR,
-// PROGRESSIVE and TRAVERSAL; WINDOWS for trees whose voxels a ray cannot count (windows.glsl); and of the includer
-// RAYS_WIDEN: whether cone_slope is other than 0.
+// PROGRESSIVE and TRAVERSAL; WINDOWS for trees whose voxels a ray cannot count (windows.glsl); BRICK_MIPS and BLENDED where
+// there are mips; and of the includer RAYS_WIDEN: whether cone_slope is other than 0.
 #include "march/buffers.glsl"
 #include "march/tree_cells.glsl"
 #include "march/ray.glsl"
@@ -28,12 +29,14 @@ bool enter_windows(inout Ray ray) { return enter_root(ray); }
 
 // An occupied voxel that a ray crosses.
 struct Sample {
-    int slot;
-    ivec3 voxel;          // in the brick, [0, BRICK_M)
-    vec3 middle;          // middle of the chord, brick voxels, [0, BRICK_M]
+    ivec3 texel;          // first texel of the brick's mip, border included
+    int mip;              // of the brick
+    ivec3 voxel;          // in the mip, [0, MIP_M(mip))
+    vec3 middle;          // middle of the chord, in voxels of the mip, [0, MIP_M(mip)]
     vec3 centre;          // of the voxel, from the root cube's low corner
     float t;              // distance of the chord's middle
     float side;           // of the voxel
+    float share;          // weight against the other mip's voxels in the same place, (0, 1]
 };
 
 // Loop turns that visit() takes at most; a pass counts them (TURN_BUDGET).
@@ -59,6 +62,9 @@ bool visit_constant(Ray entered, ConstantRun run);
 #endif
 
 #include "march/queries.glsl"
+#if BLENDED
+#include "march/blended_size.glsl"
+#endif
 #include "march/descend.glsl"
 #include "march/skim.glsl"
 
@@ -116,6 +122,31 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
     }
 }
 
+// Takes the voxel of a mip around the ray's voxel, which must be occupied, and brings the ray behind it. `goes_on` says
+// whether there is more of the ray; false when visit() has stopped it.
+bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_on) {
+    const int voxel_shift = own_shift_of(place) + mip;
+    const ivec3 low = cell_low(ray.voxel, voxel_shift);
+    const ivec3 brick_low = cell_low(ray.voxel, own_shift_of(place) + M_SHIFT);
+    const float side = float(cell_side(voxel_shift));
+    const float t_in = ray.t;
+    Sample s;
+    s.texel = slot_texel(place.slot, mip);
+    s.mip = mip;
+    s.voxel = cell_of(low - brick_low, voxel_shift);
+    s.side = side;
+    s.share = share;
+    s.centre = vec3(low) + 0.5 * side;
+    goes_on = step_over(ray, voxel_shift);
+    s.t = 0.5 * (t_in + ray.t);
+    s.middle = clamp((ray.origin + ray.direction * s.t - vec3(brick_low)) / side, vec3(0.0), vec3(float(MIP_M(mip))));
+    return visit(ray, s);
+}
+
+#if BLENDED
+#include "march/blend.glsl"
+#endif
+
 // Marches until the ray is done, or until it misses a tile or pauses: then it stands where it resumes.
 //
 // Threads that run side by side all pay for what any of them does in an innermost loop, so the loops are nested by how
@@ -126,6 +157,7 @@ int march(inout Ray ray, inout int turns) {
     Place place;
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
+    place.mip = 0;
 #if PROGRESSIVE
     place.brick_shift = ROOT_SHIFT;
 #endif
@@ -135,31 +167,26 @@ int march(inout Ray ray, inout int turns) {
     place.summary = uvec2(0u);
     forget_trail();
     for (;;) {
-        turns += 1 + VISIT_TURNS;
+        turns += (1 + VISIT_TURNS) * (BLENDED != 0 ? 5 : 1);
         const int found = seek(ray, place, turns);
         if (found != SEEK_OCCUPIED) return found == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
-        const int voxel_shift = voxel_shift_of(place);
         const ivec3 tile = cell_of(ray.voxel, place.tile_shift);
-        const ivec3 low = cell_low(ray.voxel, voxel_shift);
-        const ivec3 brick_low = cell_low(ray.voxel, voxel_shift + M_SHIFT);
-        const float side = float(cell_side(voxel_shift));
-        const float t_in = ray.t;
-        Sample s;
-        s.slot = place.slot;
-        s.voxel = cell_of(low - brick_low, voxel_shift);
-        s.side = side;
-        s.centre = vec3(low) + 0.5 * side;
-        const bool goes_on = step_over(ray, voxel_shift);
-        s.t = 0.5 * (t_in + ray.t);
-        s.middle = clamp((ray.origin + ray.direction * s.t - vec3(brick_low)) / side, vec3(0.0),
-                         vec3(float(BRICK_M)));
-        if (!visit(ray, s)) return MARCH_DONE;
+        bool goes_on = true;
+#if BLENDED
+        const bool seen_on = take_both(ray, place, goes_on);
+#else
+        const bool seen_on = take_voxel(ray, place, 0, 1.0, goes_on);
+#endif
+        if (!seen_on) return MARCH_DONE;
         if (!goes_on) {
             if (!leave_window(ray)) return MARCH_DONE;
             place.slot = -1;
         } else if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) {
             place.slot = -1;
         }
+#if BLENDED
+        if (place.slot >= 0 && needs_coarser(ray, place)) place.slot = -1;
+#endif
     }
 }
 

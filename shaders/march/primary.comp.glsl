@@ -13,6 +13,10 @@
 // defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=8 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2 HAS_CONSTANT=1
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 TILE_BLOCKS=1
 // defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=0 WINDOWS=1 TILE_BLOCKS=1
+// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 BLENDED=1 SHOW_TREE=1 TRAVERSAL=2
+// defines: TREE_N=2 BRICK_M=8 BRICK_MIPS=1 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 SHOW_TREE=1 TRAVERSAL=1
+// defines: TREE_N=8 BRICK_M=8 BRICK_MIPS=3 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=8 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0 SHOW_TREE=0 TRAVERSAL=0
 #define RAYS_WIDEN 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
@@ -30,7 +34,7 @@ bool visit(inout Ray ray, Sample s) {
 #ifdef WITH_MESHES
     if (s.t > mesh.t) return false;
 #endif
-    const float left = behind(state.color.a, coverage_of(s));
+    const float left = behind(state.color.a, coverage_of(s), s.share);
     const float weight = state.color.a - left;
     vec3 color = view.surface_color.rgb;
 #if HAS_COLOR
@@ -46,7 +50,12 @@ bool visit(inout Ray ray, Sample s) {
     color = tree_color(s, color, normal);
 #endif
     state.color.rgb += weight * color;
+#if BLENDED
+    // Each voxel's own: the mean of two mips' normals would turn over all at once while their shares change.
+    state.normal_depth.xyz += weight * facing_normal(normal, ray.direction);
+#else
     state.normal_depth.xyz += weight * normal / max(length(normal), 1e-3);
+#endif
     if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
         state.voxel_t_weight.w = floatBitsToUint(weight);
         state.normal_depth.w = s.t;
@@ -72,7 +81,7 @@ bool visit_constant(Ray entered, ConstantRun run) {
     for (int voxel = 0; voxel < run.voxels && state.color.a > OPAQUE_TRANSMITTANCE; ++voxel) {
         const float t_in = entered.t;
         const bool goes_on = step_over(entered, run.voxel_shift);
-        const float left = behind(state.color.a, coverage);
+        const float left = behind(state.color.a, coverage, 1.0);
         const float weight = state.color.a - left;
         state.color.rgb += weight * color;
         if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {

@@ -26,12 +26,13 @@ vec3 turned_to_viewer(vec3 normal, vec3 direction) {
     return away < SILHOUETTE_BEND ? normalize(normal - away * direction) : -normal;
 }
 
-// The gathered normal.
-vec3 facing_normal(RayState state, vec3 direction) {
-    const float size = length(state.normal_depth.xyz);
+// A gathered normal.
+vec3 facing_normal(vec3 gathered, vec3 direction) {
+    const float size = length(gathered);
     if (size < 1e-6) return -direction;
-    return turned_to_viewer(state.normal_depth.xyz / size, direction);
+    return turned_to_viewer(gathered / size, direction);
 }
+vec3 facing_normal(RayState state, vec3 direction) { return facing_normal(state.normal_depth.xyz, direction); }
 
 // What a surface of base colour 1 sends to the viewer.
 vec3 light_on(vec3 point, vec3 normal, float visibility) {

@@ -12,6 +12,10 @@
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2 TILE_BLOCKS=1
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2 WITH_MESHES SOFT_SHADOWS
 // defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=0 WINDOWS=1 SOFT_SHADOWS
+// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 BLENDED=1 TRAVERSAL=2
+// defines: TREE_N=2 BRICK_M=8 BRICK_MIPS=1 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 TRAVERSAL=1
+// defines: TREE_N=8 BRICK_M=8 BRICK_MIPS=3 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 TRAVERSAL=2 WITH_MESHES
+// defines: TREE_N=4 BRICK_M=8 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0 TRAVERSAL=0
 #define RAYS_WIDEN 0
 #include "march/march.glsl"
 #include "march/shade.glsl"
@@ -33,6 +37,7 @@ float visibility;
 // The receiver: a voxel near its tangent plane, and near it, is its own surface and casts no shadow on it.
 vec3 receiver;
 vec3 receiver_normal;
+float own_side;  // of the voxels that the receiver is shown with; of the finer ones, when they are blended
 float own_height;
 float own_reach;
 float receiver_rise;  // of the ray over that plane, for each unit of its length
@@ -52,7 +57,12 @@ bool is_own(Ray ray, vec3 centre, float t, float side) {
 #else
     const vec3 from_receiver = centre - receiver;
 #endif
-#if PROGRESSIVE
+#if BLENDED
+    if (side > own_side && own_reach > 0.0) {  // what stands in, and the coarser of two mips
+        height *= side / own_side;
+        reach = max(reach, own_reach_of(side));
+    }
+#elif PROGRESSIVE
     if (stand_in && own_reach > 0.0) {  // its own voxels may be larger than they should be
         height = max(height, OWN_HEIGHT * side);
         reach = max(reach, own_reach_of(side));
@@ -62,7 +72,7 @@ bool is_own(Ray ray, vec3 centre, float t, float side) {
 }
 
 bool visit(inout Ray ray, Sample s) {
-    if (!is_own(ray, s.centre, s.t, s.side)) visibility = behind(visibility, coverage_of(s));
+    if (!is_own(ray, s.centre, s.t, s.side)) visibility = behind(visibility, coverage_of(s), s.share);
     return visibility > OPAQUE_TRANSMITTANCE;
 }
 
@@ -78,7 +88,7 @@ bool visit_constant(Ray entered, ConstantRun run) {
         const float t_in = entered.t;
         const vec3 centre = vec3(cell_low(entered.voxel, run.voxel_shift)) + 0.5 * side;
         const bool goes_on = step_over(entered, run.voxel_shift);
-        if (!is_own(entered, centre, 0.5 * (t_in + entered.t), side)) visibility = behind(visibility, coverage);
+        if (!is_own(entered, centre, 0.5 * (t_in + entered.t), side)) visibility = behind(visibility, coverage, 1.0);
         if (!goes_on) break;
     }
     return visibility > OPAQUE_TRANSMITTANCE;
@@ -97,7 +107,12 @@ float end_of_occluders(vec3 to_light) {
 // Side of the voxels that a cone of this width is shown with (see march()).
 float voxel_side(float width) {
     float side = float(ROOT_SIDE / BRICK_M);
-    for (int level = 0; level < MAX_LEVEL && side > width; ++level) side /= float(TREE_N);
+    int level = 0;
+    for (; level < MAX_LEVEL && side > width; ++level) side /= float(TREE_N);
+#if BLENDED
+    const int own_shift = ROOT_SHIFT - M_SHIFT - N_SHIFT * level;
+    side = float(cell_side(own_shift + blended_mip(own_shift, width)));
+#endif
     return side;
 }
 
@@ -191,6 +206,7 @@ void main() {
     const float width = view.background.w * view.eye.w * (seen.skipped + depth);
     const float side = voxel_side(width);
     receiver = seen.origin + seen.direction * depth;
+    own_side = side;
     own_height = OWN_HEIGHT * side;
 #ifdef WITH_MESHES
     if (at_mesh) own_height = mesh_own_height * side;  // its place is known exactly

@@ -1,24 +1,27 @@
 // Pictures of the tree: what a voxel's level and place in its brick say, in place of its colour.
 
-vec3 level_color(int level) {
+vec3 level_color(float level) {
     const vec3 phase = vec3(LEVEL_PHASE_R, LEVEL_PHASE_G, LEVEL_PHASE_B);
-    return 0.5 + 0.5 * cos(LEVEL_HUE * float(level) + phase);
+    return 0.5 + 0.5 * cos(LEVEL_HUE * level + phase);
 }
 
 int first_level = 0;  // of the cube that descents start from
 
-int level_of(Sample s) {
-    return first_level + (ROOT_SHIFT - M_SHIFT - int(round(log2(s.side) / log2(float(CELL_BASE))))) / N_SHIFT;
+// The tree level whose bricks have voxels of that size; mips lie between two levels.
+float level_of(Sample s) {
+    const int shift = int(round(log2(s.side) / log2(float(CELL_BASE))));
+    return float(first_level) + float(ROOT_SHIFT - M_SHIFT - shift) / float(N_SHIFT);
 }
 
 // Is the sample near where the surface leaves its brick? A side that the surface runs along does not count: it would be
 // marked all over.
 bool near_brick_side(Sample s, vec3 normal) {
+    const int last = MIP_M(s.mip) - 1;
     const vec3 across = abs(normal);
     const bvec3 along = greaterThanEqual(across, vec3(0.98 * max(across.x, max(across.y, across.z))));
-    const bvec3 near = bvec3(any(equal(ivec2(s.voxel.x), ivec2(0, BRICK_M - 1))),
-                             any(equal(ivec2(s.voxel.y), ivec2(0, BRICK_M - 1))),
-                             any(equal(ivec2(s.voxel.z), ivec2(0, BRICK_M - 1))));
+    const bvec3 near = bvec3(any(equal(ivec2(s.voxel.x), ivec2(0, last))),
+                             any(equal(ivec2(s.voxel.y), ivec2(0, last))),
+                             any(equal(ivec2(s.voxel.z), ivec2(0, last))));
     return any(bvec3(near.x && !along.x, near.y && !along.y, near.z && !along.z));
 }
 

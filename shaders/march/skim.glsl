@@ -13,30 +13,42 @@ int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 }
 
 #define SKIM_OCCUPIED 0  // the ray's voxel is occupied
-#define SKIM_LEFT 1      // the ray left the tile
+#define SKIM_LEFT 1      // the ray left the tile, or the mips of it that it sees
 #define SKIM_ENDED 2     // the ray is done
 
 // Skips the empty cells of a brick.
 int skim(inout Ray ray, Place place, inout int turns) {
-    const int voxel_shift = voxel_shift_of(place);
+    const int own_shift = own_shift_of(place);
+#if BLENDED
+    const int mip = place.mip + 1;
+#else
+    const int mip = 0;
+#endif
+    const int blocks = MIP_BLOCKS_A_SIDE(mip);
     const ivec3 tile = cell_of(ray.voxel, place.tile_shift);
-    const int first_mask = place.slot * MASK_WORDS_A_SLOT + SUMMARY_WORDS;
+    const int first_mask = place.slot * MASK_WORDS_A_SLOT + first_mask_of(mip);
     // A straight line crosses at most 3 M - 2 cells of a brick.
     for (int cell = 0; cell < 3 * BRICK_M; ++cell) {
         ++turns;
-        const ivec3 b = place_in(ray.voxel, voxel_shift, M_SHIFT);
-        const ivec3 c = cell_of(b, BLOCK_SHIFT);
+        ivec3 b = place_in(ray.voxel, own_shift, M_SHIFT);
+        ivec3 c = cell_of(b, BLOCK_SHIFT);
         int empty = empty_block_shift(place.slot, place.summary, c);
-        int shift = voxel_shift + BLOCK_SHIFT + empty;
+        int shift = own_shift + BLOCK_SHIFT + empty;
         if (empty < 0) {
-            const uvec2 mask =
-                texelFetch(brick_masks, first_mask + c.x + BLOCKS_A_SIDE * (c.y + BLOCKS_A_SIDE * c.z)).xy;
+#if BLENDED
+            b = cell_of(b, mip);
+            c = cell_of(b, BLOCK_SHIFT);
+#endif
+            const uvec2 mask = texelFetch(brick_masks, first_mask + c.x + blocks * (c.y + blocks * c.z)).xy;
             empty = empty_voxel_shift(mask, b - cell_low(b, BLOCK_SHIFT));
             if (empty < 0) return SKIM_OCCUPIED;
-            shift = voxel_shift + empty;
+            shift = min(own_shift + mip + empty, own_shift + M_SHIFT);
         }
         if (!step_over(ray, shift)) return SKIM_ENDED;
         if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) return SKIM_LEFT;
+#if BLENDED
+        if (needs_coarser(ray, place)) return SKIM_LEFT;  // what is empty here may not be so there
+#endif
     }
     return SKIM_LEFT;
 }

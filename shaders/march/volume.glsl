@@ -24,7 +24,7 @@ mat3 slice_of(ivec3 p) {
 }
 
 Neighbours neighbours_of(Sample s) {
-    const ivec3 p = slot_texel(s.slot) + s.voxel;
+    const ivec3 p = s.texel + s.voxel;
     return Neighbours(slice_of(p), slice_of(p + ivec3(0, 0, 1)), slice_of(p + ivec3(0, 0, 2)));
 }
 

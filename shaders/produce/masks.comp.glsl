@@ -1,35 +1,58 @@
-// One thread is one block of voxels of a new brick: it packs their occupancy into the 64-bit mask that rays skip by.
-// defines: BRICK_M=27 HAS_COLOR=1
-// defines: BRICK_M=16 HAS_COLOR=1
-// defines: BRICK_M=8 HAS_COLOR=0
+// One thread is one block of voxels of a mip of a new brick: it packs their occupancy into the 64-bit mask that rays skip
+// by. One dispatch a mip, finest first: a voxel counts when a finer one in it does, which the alpha mask's samples alone
+// would not always say.
+// defines: BRICK_M=27 HAS_COLOR=1 HAS_MASK=1
+// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1
+// defines: BRICK_M=16 BRICK_MIPS=0 HAS_COLOR=1 HAS_MASK=0
+// defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=1
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = SSBO_BRICK_MASKS) writeonly buffer MaskBlock { uvec2 brick_masks[]; };
+layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
 
 uniform uint tile_count;
+uniform int mip;
+
+#if HAS_MASK && BRICK_MIPS > 0
+// Is one of the 2^3 voxels of the next finer mip in voxel v occupied?
+bool any_finer(uint slot, ivec3 v) {
+    const int blocks = MIP_BLOCKS_A_SIDE(mip - 1);
+    const ivec3 c = 2 * v >> 2;
+    const uint word = slot * uint(MASK_WORDS_A_SLOT) + uint(first_mask_of(mip - 1) + c.x + blocks * (c.y + blocks * c.z));
+    const ivec3 first = 2 * v & 3;
+    const uvec2 mask = brick_masks[word];
+    return ((first.z == 0 ? mask.x : mask.y) >> (first.x + 4 * first.y) & 0x00330033u) != 0u;
+}
+#endif
 
 void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= tile_count * uint(BLOCKS)) return;
-    const uint tile = i / uint(BLOCKS);
-    const int block = int(i % uint(BLOCKS));
-    const ivec3 low = BLOCK_SIDE * ivec3(block % BLOCKS_A_SIDE, block / BLOCKS_A_SIDE % BLOCKS_A_SIDE,
-                                         block / (BLOCKS_A_SIDE * BLOCKS_A_SIDE));
+    const uint blocks = uint(MIP_BLOCKS(mip));
+    if (i >= tile_count * blocks) return;
+    const uint tile = i / blocks;
+    const int block = int(i % blocks);
+    const int blocks_a_side = MIP_BLOCKS_A_SIDE(mip);
+    const ivec3 low = BLOCK_SIDE * ivec3(block % blocks_a_side, block / blocks_a_side % blocks_a_side,
+                                         block / (blocks_a_side * blocks_a_side));
+    const int side = min(BLOCK_SIDE, MIP_M(mip));
+    const uint slot = uint(tiles[tile].slot.x);
     uvec2 mask = uvec2(0u);
-    for (int z = 0; z < BLOCK_SIDE; ++z) {
-        for (int y = 0; y < BLOCK_SIDE; ++y) {
-            for (int x = 0; x < BLOCK_SIDE; ++x) {
-                const uint voxel = scratch_voxel(tile, low + ivec3(x, y, z) + 1);
-                const uint bit = (scratch[2u * voxel] | scratch[2u * voxel + 1u]) != 0u ? 1u : 0u;
+    for (int z = 0; z < side; ++z) {
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                const uint voxel = scratch_voxel(tile, mip, low + ivec3(x, y, z) + 1);
+                bool occupied = (scratch[2u * voxel] | scratch[2u * voxel + 1u]) != 0u;
+#if HAS_MASK && BRICK_MIPS > 0
+                if (mip > 0 && !occupied) occupied = any_finer(slot, low + ivec3(x, y, z));
+#endif
+                const uint bit = occupied ? 1u : 0u;
                 const int place = x + BLOCK_SIDE * (y + BLOCK_SIDE * z);
                 if (place < 32) mask.x |= bit << place;
                 else mask.y |= bit << (place - 32);
             }
         }
     }
-    const uint slot = uint(tiles[tile].slot_texel.w);
-    brick_masks[slot * uint(MASK_WORDS_A_SLOT) + uint(SUMMARY_WORDS) + uint(block)] = mask;
+    brick_masks[slot * uint(MASK_WORDS_A_SLOT) + uint(first_mask_of(mip) + block)] = mask;
 }

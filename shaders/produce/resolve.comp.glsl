@@ -1,7 +1,7 @@
-// One thread is one voxel of a new brick, border included: it turns what was gathered into the pool's texels, and
+// One thread is one voxel of a mip of a new brick, border included: it turns what was gathered into the pool's texels, and
 // leaves the scratch empty for the next batch.
-// defines: BRICK_M=16 HAS_COLOR=1
-// defines: BRICK_M=8 HAS_COLOR=0
+// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1
+// defines: BRICK_M=8 BRICK_MIPS=0 HAS_COLOR=0
 // defines: BRICK_M=27 HAS_COLOR=1
 #include "produce/scratch.glsl"
 
@@ -32,8 +32,11 @@ void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= tile_count * uint(VOXELS)) return;
     const uint tile = i / uint(VOXELS);
-    const int v = int(i % uint(VOXELS));
-    const ivec3 place = ivec3(v % SIDE, v / SIDE % SIDE, v / (SIDE * SIDE));
+    int v = int(i % uint(VOXELS));
+    int mip = 0;
+    for (; mip < BRICK_MIPS && v >= MIP_VOXELS(mip); ++mip) v -= MIP_VOXELS(mip);
+    const int side = MIP_SIDE(mip);
+    const ivec3 place = ivec3(v % side, v / side % side, v / (side * side));
     const uvec2 mask = uvec2(scratch[2u * i], scratch[2u * i + 1u]);
 
     float covered = 0.0;
@@ -56,7 +59,7 @@ void main() {
         scratch[2u * i + 1u] = 0u;
         for (uint w = 0u; w < uint(SUM_WORDS); ++w) scratch[sums + w] = 0u;
     }
-    const ivec3 texel = tiles[tile].slot_texel.xyz + place;
+    const ivec3 texel = slot_texel(tiles[tile].slot.x, mip) + place;
     // Both are weighted with the coverage, so that a filtered fetch does not mix in what is empty.
 #if HAS_COLOR
     imageStore(brick_color, texel, vec4(color * covered, covered));

@@ -3,12 +3,18 @@
 #include "interop/config.h"
 #include "interop/bindings.h"
 #include "interop/types.h"
+#include "pool/brick_levels.glsl"
 
-#define SIDE (BRICK_M + 2)           // voxels a side, border included
-#define VOXELS (SIDE * SIDE * SIDE)
+// Every mip of a brick is gathered like a brick of its own, from the triangles themselves: so it equals the same part of the
+// parent's brick, and of its neighbours' borders, bit for bit.
+#define MIP_SIDE(mip) (MIP_M(mip) + 2)  // voxels a side, border included
+#define MIP_VOXELS(mip) CUBE(MIP_SIDE(mip))
+#define VOXELS                                                                                            \
+    (MIP_VOXELS(0) + (BRICK_MIPS >= 1 ? MIP_VOXELS(1) : 0) + (BRICK_MIPS >= 2 ? MIP_VOXELS(2) : 0) + \
+     (BRICK_MIPS >= 3 ? MIP_VOXELS(3) : 0))
 
 // Two arrays, so that empty voxels, which are most, cost their masks alone.
-//     masks      2 words a voxel: 4^3 finer voxels, bit x + 4 (y + 4 z)
+//     masks      2 words a voxel, mip after mip: 4^3 finer voxels, bit x + 4 (y + 4 z)
 //     sums       SUM_WORDS a voxel, from word `sums_offset` on
 #define SUM_WEIGHT 0               // finer voxels, counted for each triangle
 #define SUM_NORMAL 1               // 3 words: weighted normals, NORMAL_UNIT = 1
@@ -27,5 +33,15 @@ layout(std430, binding = SSBO_BRICK_SCRATCH) buffer ScratchBlock { uint scratch[
 
 uniform uint sums_offset;
 
-// Number of a voxel in the batch; v in [0, SIDE), border included.
-uint scratch_voxel(uint tile, ivec3 v) { return tile * uint(VOXELS) + uint(v.x + SIDE * (v.y + SIDE * v.z)); }
+// The first voxel of a mip among those of its tile.
+int first_voxel_of(int mip) {
+    int first = 0;
+    for (int k = 0; k < mip; ++k) first += MIP_VOXELS(k);
+    return first;
+}
+
+// Number of a voxel in the batch; v in [0, MIP_SIDE(mip)), border included.
+uint scratch_voxel(uint tile, int mip, ivec3 v) {
+    const int side = MIP_SIDE(mip);
+    return tile * uint(VOXELS) + uint(first_voxel_of(mip) + v.x + side * (v.y + side * v.z));
+}

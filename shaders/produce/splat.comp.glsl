@@ -1,8 +1,8 @@
-// One thread is one pair: a triangle, and some rows of a tile that it may touch. It finds the brick
+// One thread is one pair: a triangle, and some rows of a mip of a tile that it may touch. It finds the brick
 // voxels that the triangle meets, exactly as the voxelizer does, marks their finer voxels and adds its attributes.
-// defines: BRICK_M=16 HAS_COLOR=1 HAS_MASK=1
-// defines: BRICK_M=16 HAS_COLOR=1 HAS_MASK=0
-// defines: BRICK_M=8 HAS_COLOR=0 HAS_MASK=0
+// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1
+// defines: BRICK_M=16 BRICK_MIPS=0 HAS_COLOR=1 HAS_MASK=0
+// defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=0
 // defines: BRICK_M=27 HAS_COLOR=1 HAS_MASK=1
 #include "produce/scratch.glsl"
 #if BRICK_M % 3 == 0
@@ -134,11 +134,12 @@ void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= pair_count) return;
     const uint triangle = pairs[i].triangle;
-    const uint tile_index = pairs[i].tile;
+    const uint tile_index = pairs[i].tile_mip & 0xFFFFu;
+    const int mip = int(pairs[i].tile_mip >> 16);
     const ivec2 first_row = ivec2(pairs[i].rows & 0xFFu, pairs[i].rows >> 16 & 0xFFu);
     const ivec2 row_count = ivec2(pairs[i].rows >> 8 & 0xFFu, pairs[i].rows >> 24);
     const BrickTile tile = tiles[tile_index];
-    const int size = tile.low_size.w;
+    const int size = tile.low_size.w + mip;  // mips are of powers of two alone
 
     const uvec4 corners = surface_triangles[triangle].vertices_material;
     const ivec3 a = surface_position(corners.x);
@@ -148,9 +149,9 @@ void main() {
     const ExactTriangle fine = exact_triangle(a, b, c, FINER(size));
     const Patch s = make_patch(corners.xyz, surface_materials[corners.w], a, b, c);
 
-    const ivec3 region_low = tile.low_size.xyz - 1;
+    const ivec3 region_low = (tile.low_size.xyz >> mip) - 1;
     const ivec3 low = max(coarse.low, region_low + ivec3(0, first_row));
-    const ivec3 high = min(coarse.high, region_low + ivec3(SIDE - 1, first_row + row_count - 1));
+    const ivec3 high = min(coarse.high, region_low + ivec3(MIP_SIDE(mip) - 1, first_row + row_count - 1));
     if (any(greaterThan(low, high))) return;
     // One loop over rows and voxels alike: threads that run side by side wait for the longest, not for the product of
     // the longest of each nested loop.
@@ -168,7 +169,7 @@ void main() {
             v.x = max(span.x, low.x);
             last = min(span.y, high.x);
         }
-        if (v.x <= last) splat(fine, s, v, scratch_voxel(tile_index, v - region_low));
+        if (v.x <= last) splat(fine, s, v, scratch_voxel(tile_index, mip, v - region_low));
         ++v.x;
     }
 }

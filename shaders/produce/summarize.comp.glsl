@@ -1,8 +1,10 @@
-// One thread is one summary word of a new brick: which of 64 blocks are not empty. With TELL_EMPTY, where the
-// oracle is not exact, it also tells whether there is anything in the tile at all.
-// defines: BRICK_M=16 HAS_COLOR=1 TELL_EMPTY=0
-// defines: BRICK_M=8 HAS_COLOR=0 TELL_EMPTY=1
-// defines: BRICK_M=81 HAS_COLOR=0 TELL_EMPTY=1
+// One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With TELL_EMPTY,
+// where the oracle is not exact, it also tells whether there is anything in the tile at all.
+// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1 TELL_EMPTY=1
+// defines: BRICK_M=16 HAS_COLOR=1 HAS_MASK=0 TELL_EMPTY=0
+// defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=0 TELL_EMPTY=0
+// defines: BRICK_M=8 BRICK_MIPS=3 HAS_COLOR=0 HAS_MASK=0 TELL_EMPTY=0
+// defines: BRICK_M=81 HAS_COLOR=0 HAS_MASK=0 TELL_EMPTY=1
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
 
@@ -16,16 +18,39 @@ layout(std430, binding = SSBO_BRICK_FOUND) buffer FoundBlock { uint found[]; };
 
 uniform uint tile_count;
 
+// Without alpha masks the finest mip tells of all whose voxels are no larger than a block.
+bool is_full(uint first, uint block) {
+    const uvec2 mask = brick_masks[first + uint(SUMMARY_WORDS) + block];
+    bool full = (mask.x | mask.y) != 0u;
+#if BRICK_MIPS > 2 || HAS_MASK && BRICK_MIPS > 0
+    // Every mip's voxels lie in occupied ones of the coarsest.
+    const int b = int(block);
+    const ivec3 place = ivec3(b % BLOCKS_A_SIDE, b / BLOCKS_A_SIDE % BLOCKS_A_SIDE, b / (BLOCKS_A_SIDE * BLOCKS_A_SIDE));
+    const int blocks = MIP_BLOCKS_A_SIDE(BRICK_MIPS);
+    const ivec3 low = 4 * place >> BRICK_MIPS;
+    const ivec3 high = 4 * place + 3 >> BRICK_MIPS;
+    for (int z = low.z; z <= high.z; ++z) {
+        for (int y = low.y; y <= high.y; ++y) {
+            for (int x = low.x; x <= high.x; ++x) {
+                const uvec2 word = brick_masks[first + uint(first_mask_of(BRICK_MIPS) + x / 4 +
+                                                            blocks * (y / 4 + blocks * (z / 4)))];
+                full = full || ((z % 4 < 2 ? word.x : word.y) >> (x % 4 + 4 * (y % 4) + 16 * (z % 2)) & 1u) != 0u;
+            }
+        }
+    }
+#endif
+    return full;
+}
+
 void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= tile_count * uint(SUMMARY_WORDS)) return;
-    const uint slot = uint(tiles[i / uint(SUMMARY_WORDS)].slot_texel.w);
+    const uint slot = uint(tiles[i / uint(SUMMARY_WORDS)].slot.x);
     const uint word = i % uint(SUMMARY_WORDS);
     const uint first = slot * uint(MASK_WORDS_A_SLOT);
     uvec2 summary = uvec2(0u);
     for (uint bit = 0u; bit < 64u && word * 64u + bit < uint(BLOCKS); ++bit) {
-        const uvec2 mask = brick_masks[first + uint(SUMMARY_WORDS) + word * 64u + bit];
-        const uint full = (mask.x | mask.y) != 0u ? 1u : 0u;
+        const uint full = is_full(first, word * 64u + bit) ? 1u : 0u;
         if (bit < 32u) summary.x |= full << bit;
         else summary.y |= full << (bit - 32u);
     }
