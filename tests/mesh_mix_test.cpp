@@ -561,21 +561,19 @@ TEST_F(MeshMix, AMillionUnitsFromTheOriginShowsTheSame) {
 }
 
 TEST(MeshMixContexts, OsmesaAndEglShowTheSame) {
-    const auto picture = [](gl::ContextKind kind) {
-        const auto context = gl::create_context({.kind = kind});
+    std::vector<Image> pictures;
+    for (const gl::ContextKind kind : {gl::ContextKind::osmesa, gl::ContextKind::egl}) {
+        std::unique_ptr<gl::Context> context;
+        try {
+            context = gl::create_context({.kind = kind});
+        } catch (const Error& error) {  // newer distributions have no OSMesa
+            GTEST_SKIP() << "only one kind of context here: " << error.what();
+        }
         const Everything all;
-        return all.renderer().render(all.view);
-    };
-    Image osmesa;
-    Image egl;
-    try {
-        osmesa = picture(gl::ContextKind::osmesa);
-        egl = picture(gl::ContextKind::egl);
-    } catch (const Error& error) {
-        GTEST_SKIP() << "only one kind of context here: " << error.what();
+        pictures.push_back(all.renderer().render(all.view));
     }
     // Drivers may round a vertex to another 256th of a pixel, which shows at edges alone.
-    EXPECT_LE(others(osmesa, egl, 2), 97 * 61 / 100);
+    EXPECT_LE(others(pictures[0], pictures[1], 2), 97 * 61 / 100);
 }
 
 }  // namespace
