@@ -124,10 +124,8 @@ int level_of_tile(Ray ray, int tile_shift) {
 #endif
 }
 
-// Finds the tile that the ray's cone asks for at its voxel.
-int descend(Ray ray, out Place place, out int empty_shift) {
-    uint entry;
-    uvec4 node;
+Place no_place() {
+    Place place;
     place.slot = -1;
     place.tile_shift = ROOT_SHIFT;
     place.mip = 0;
@@ -138,6 +136,14 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     place.entry = 0u;
 #endif
     place.summary = uvec2(0u);
+    return place;
+}
+
+// Finds the tile that the ray's cone asks for at its voxel.
+int descend(Ray ray, out Place place, out int empty_shift) {
+    uint entry;
+    uvec4 node;
+    place = no_place();
     empty_shift = ROOT_SHIFT;
 #if WINDOWS
     entry = window_tile(ray);

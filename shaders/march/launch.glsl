@@ -11,6 +11,10 @@ layout(std430, binding = SSBO_BLOCK_STARTS) readonly buffer BlockStartBlock { Bl
 uniform uint ray_count;
 uniform bool first_pass;
 uniform uint list_in;  // words in lists[]
+uniform uint list_out;
+uniform uint shadow_list;
+
+RayState state;  // of the thread's ray
 
 struct Launch {
     ivec2 pixel;     // in the band
@@ -73,4 +77,36 @@ bool enter(inout Ray ray, Launch launch, PixelRay seen) {
     stay_behind_planes(ray);
 #endif
     return inside;
+}
+
+// Brings the pixel's ray to its end; false when it waits for the next pass.
+bool march_pixel(Launch launch, PixelRay seen) {
+    Ray ray = launched_ray(launch, seen);
+    bool inside = true;
+    if (first_pass) {
+        state.color = vec4(0.0, 0.0, 0.0, 1.0);
+        state.normal_depth = vec4(0.0);
+        state.voxel_t_weight = uvec4(0u);
+        inside = enter(ray, launch, seen);
+    } else {
+        state = rays[launch.index];
+        load_position(ray, state);
+    }
+    const int end = inside ? march(ray) : MARCH_DONE;
+    leave_report(launch.index);
+    if (end != MARCH_MISSING) return true;
+    store_position(state, ray);
+    rays[launch.index] = state;
+    lists[list_out + atomicAdd(counters.waiting_primary, 1u)] = launch.index;
+    return false;
+}
+
+// Leaves the pixel to a shadow ray, which has not started.
+void leave_to_shadow_ray(uint index) {
+    state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);
+#if WINDOWS
+    state.voxel_t_weight.z = uint(seen_window);
+#endif
+    rays[index] = state;
+    lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
 }

@@ -154,17 +154,7 @@ bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_
 //
 // `turns` counts what a thread has done in this pass; it may march several rays.
 int march(inout Ray ray, inout int turns) {
-    Place place;
-    place.slot = -1;
-    place.tile_shift = ROOT_SHIFT;
-    place.mip = 0;
-#if PROGRESSIVE
-    place.brick_shift = ROOT_SHIFT;
-#endif
-#if HAS_CONSTANT
-    place.entry = 0u;
-#endif
-    place.summary = uvec2(0u);
+    Place place = no_place();
     forget_trail();
     for (;;) {
         turns += (1 + VISIT_TURNS) * (BLENDED != 0 ? 5 : 1);

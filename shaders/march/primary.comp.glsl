@@ -26,10 +26,7 @@
 
 #include "march/launch.glsl"
 
-uniform uint list_out;
-uniform uint shadow_list;
 
-RayState state;
 bool visit(inout Ray ray, Sample s) {
 #ifdef WITH_MESHES
     if (s.t > mesh.t) return false;
@@ -105,58 +102,32 @@ bool needs_shadow_ray(PixelRay seen) {
 void main() {
     Launch launch;
     if (!find_pixel(launch)) return;
-    const ivec2 pixel = launch.pixel;
-    const uint index = launch.index;
-    const PixelRay seen = pixel_ray(pixel);
-    Ray ray = launched_ray(launch, seen);
+    const PixelRay seen = pixel_ray(launch.pixel);
+    if (!march_pixel(launch, seen)) return;
 
-    bool inside = true;
-    if (first_pass) {
-        state.color = vec4(0.0, 0.0, 0.0, 1.0);
-        state.normal_depth = vec4(0.0);
-        state.voxel_t_weight = uvec4(0u);
-        inside = enter(ray, launch, seen);
-    } else {
-        state = rays[index];
-        load_position(ray, state);
+    if (state.color.a <= OPAQUE_TRANSMITTANCE) {
+        // What little shines through is the surface's own: no background in a solid thing.
+        state.color.rgb /= 1.0 - state.color.a;
+        state.color.a = 0.0;
     }
-    const int end = inside ? march(ray) : MARCH_DONE;
-    leave_report(index);
-
-    if (end == MARCH_MISSING) {
-        store_position(state, ray);
-        rays[index] = state;
-        lists[list_out + atomicAdd(counters.waiting_primary, 1u)] = index;
-    } else {
-        if (state.color.a <= OPAQUE_TRANSMITTANCE) {
-            // What little shines through is the surface's own: no background in a solid thing.
-            state.color.rgb /= 1.0 - state.color.a;
-            state.color.a = 0.0;
-        }
 #if WINDOWS
-        const PixelRay shown = pixel_ray(pixel);  // in the window of what it shows
+    const PixelRay shown = pixel_ray(launch.pixel);  // in the window of what it shows
 #else
-        const PixelRay shown = seen;
+    const PixelRay shown = seen;
 #endif
-        bool waits = needs_shadow_ray(shown);
+    bool waits = needs_shadow_ray(shown);
 #ifdef WITH_MESHES
-        // Until the pixel is written, its place keeps the light that reaches the voxels; negative: not known yet.
-        image_rgba8[index] = floatBitsToUint(waits ? -1.0 : 1.0);
-        waits = waits || mesh_needs_shadow_ray(mesh, seen, state.color.a);
+    // Until the pixel is written, its place keeps the light that reaches the voxels; negative: not known yet.
+    image_rgba8[launch.index] = floatBitsToUint(waits ? -1.0 : 1.0);
+    waits = waits || mesh_needs_shadow_ray(mesh, seen, state.color.a);
 #endif
-        if (waits) {
-            state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
-#if WINDOWS
-            state.voxel_t_weight.z = uint(seen_window);
-#endif
-            rays[index] = state;
-            lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
-        } else {
-#ifdef WITH_MESHES
-            write_pixel(pixel, state, 1.0, mesh, 1.0);
-#else
-            write_pixel(pixel, state, 1.0);
-#endif
-        }
+    if (waits) {
+        leave_to_shadow_ray(launch.index);
+        return;
     }
+#ifdef WITH_MESHES
+    write_pixel(launch.pixel, state, 1.0, mesh, 1.0);
+#else
+    write_pixel(launch.pixel, state, 1.0);
+#endif
 }

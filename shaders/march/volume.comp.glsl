@@ -16,11 +16,8 @@
 
 #include "march/launch.glsl"
 
-uniform uint list_out;
-uniform uint shadow_list;
 
-// Of a volume: color.rgb gathers what is seen without the light, normal_depth.xyz what the light adds.
-RayState state;
+// Of a volume, `state` gathers in color.rgb what is seen without the light, in normal_depth.xyz what the light adds.
 
 // Light on a place in the volume.
 struct Lit {
@@ -96,31 +93,7 @@ bool visit_constant(Ray entered, ConstantRun run) {
 
 void main() {
     Launch launch;
-    if (!find_pixel(launch)) return;
-    const ivec2 pixel = launch.pixel;
-    const uint index = launch.index;
-    const PixelRay seen = pixel_ray(pixel);
-    Ray ray = launched_ray(launch, seen);
-
-    bool inside = true;
-    if (first_pass) {
-        state.color = vec4(0.0, 0.0, 0.0, 1.0);
-        state.normal_depth = vec4(0.0);
-        state.voxel_t_weight = uvec4(0u);
-        inside = enter(ray, launch, seen);
-    } else {
-        state = rays[index];
-        load_position(ray, state);
-    }
-    const int end = inside ? march(ray) : MARCH_DONE;
-    leave_report(index);
-
-    if (end == MARCH_MISSING) {
-        store_position(state, ray);
-        rays[index] = state;
-        lists[list_out + atomicAdd(counters.waiting_primary, 1u)] = index;
-        return;
-    }
+    if (!find_pixel(launch) || !march_pixel(launch, pixel_ray(launch.pixel))) return;
     if (state.color.a <= OPAQUE_TRANSMITTANCE) {
         // What little shines through is the volume's own: no background in an opaque thing.
         state.color.rgb /= 1.0 - state.color.a;
@@ -129,10 +102,8 @@ void main() {
     }
     const vec3 direct = state.normal_depth.xyz;
     if (view.size_shadow.z != 0 && max(direct.x, max(direct.y, direct.z)) > 1.0 / 1024.0) {
-        state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);  // not started
-        rays[index] = state;
-        lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
+        leave_to_shadow_ray(launch.index);
     } else {
-        write_volume_pixel(pixel, state, 1.0);
+        write_volume_pixel(launch.pixel, state, 1.0);
     }
 }
