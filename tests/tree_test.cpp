@@ -326,6 +326,20 @@ TEST_F(TreeTest, BricksThatMayNotStayNeverTakeTurns) {
     EXPECT_TRUE(tree().add_brick(top + 4, true).has_value());
 }
 
+TEST_F(TreeTest, SlotIsGivenOutOnceInARoundHoweverOldItsBrickCounts) {
+    make(8, 2);
+    const std::uint32_t top = children(0);
+    tree().keep_since(round());
+    EXPECT_TRUE(tree().add_brick(top, false).has_value());
+    EXPECT_TRUE(tree().add_brick(top + 1, false).has_value());
+    // Both wait for what fills them. One that is needed now must not be put in the same place.
+    EXPECT_FALSE(tree().add_brick(top + 2).has_value());
+    EXPECT_TRUE(tree().slot(top).has_value());
+    EXPECT_TRUE(tree().slot(top + 1).has_value());
+    next_round();
+    EXPECT_TRUE(tree().add_brick(top + 2).has_value()) << "it is filled now, and may go";
+}
+
 TEST_F(TreeTest, EntriesOfABlockTakenAwayWantNothingInThatRound) {
     make(5, 8);
     const std::uint32_t top = children(0);

@@ -3,8 +3,7 @@ find_package(nlohmann_json REQUIRED)
 find_program(XVFB Xvfb)
 find_program(XDOTOOL xdotool)
 
-cairn_test(viewer_test SOURCES viewer_test.cpp gl_fixture.h LIBRARIES cairn_viewer cairn::renderer fmt::fmt TIMEOUT 120
-           SERIAL)
+cairn_test(viewer_test SOURCES viewer_test.cpp gl_fixture.h LIBRARIES cairn_viewer cairn::renderer fmt::fmt TIMEOUT 120)
 if(XVFB AND XDOTOOL)
   add_executable(view_window_test view_window_test.cpp scratch_folder.h)
   target_link_libraries(view_window_test PRIVATE cairn::base nlohmann_json::nlohmann_json fmt::fmt GTest::gtest_main)

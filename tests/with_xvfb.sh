@@ -13,15 +13,20 @@ clean_up() {
 }
 trap clean_up EXIT
 
-# Xvfb picks a free display by itself, and writes its number when it is ready.
+# Xvfb picks a free display by itself, and writes its number when it is ready. Two that start at once may pick the same, so
+# they start one after the other.
+exec 9<"$0"
+flock 9
 mkfifo "$scratch/display"
-Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3>"$scratch/display" 2>"$scratch/log" &
+Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3>"$scratch/display" 2>"$scratch/log" 9<&- &
 server=$!
 if ! read -r -t 30 number <"$scratch/display"; then
   echo "Xvfb did not start:" >&2
   cat "$scratch/log" >&2
   exit 1
 fi
+
+exec 9<&-
 
 unset WAYLAND_DISPLAY
 DISPLAY=":$number" "$@"

@@ -50,6 +50,7 @@ Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes,
     block_birth_.resize(std::size_t(blocks_.count()), 0);
     slot_owner_.resize(std::size_t(brick_slots), none);
     slot_tile_.resize(std::size_t(brick_slots));
+    slot_birth_.resize(std::size_t(brick_slots), 0);
     node_buffer_ = gl::Buffer(entry_total * sizeof(interop::NodeEntry), "node pool");
     node_buffer_.fill(0);
     node_texture_ = buffer_texture(GL_RGBA32UI, node_buffer_);
@@ -137,6 +138,7 @@ std::optional<int> Tree::add_brick(std::uint32_t entry, bool may_stay) {
     bricks_.touch(slot, stamp);
     slot_owner_[std::size_t(slot)] = entry;
     slot_tile_[std::size_t(slot)] = tiles_[entry];
+    slot_birth_[std::size_t(slot)] = round_;
     entries_[entry].brick |= std::uint32_t(slot) + 1;
     mark_dirty(entry);
     return slot;
@@ -147,7 +149,9 @@ int Tree::take_slot(std::uint32_t limit) {
     if (!slots_sorted_) {
         old_slots_.clear();
         for (int slot = 0; slot < bricks_.count(); ++slot) {
-            if (is_old(bricks_.stamp(slot))) old_slots_.push_back(slot);
+            // One that was given out in this round waits for its brick, however old it counts.
+            const bool is_new = slot_birth_[std::size_t(slot)] == round_;
+            if (is_old(bricks_.stamp(slot)) && !is_new) old_slots_.push_back(slot);
         }
         std::sort(old_slots_.begin(), old_slots_.end(),
                   [&](int a, int b) { return bricks_.stamp(a) > bricks_.stamp(b); });

@@ -161,6 +161,7 @@ private:
     std::vector<std::uint32_t> block_birth_;   // the round that filled it
     std::vector<std::uint32_t> slot_owner_;    // entry, or none: free, or an orphan's
     std::vector<Tile> slot_tile_;              // of those that are not free
+    std::vector<std::uint32_t> slot_birth_;    // the round that gave it out
     std::unordered_map<Tile, Orphan, TileHash> orphans_;
     std::vector<Evicted> evicted_;
     bool records_evictions_ = false;
