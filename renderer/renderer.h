@@ -189,7 +189,8 @@ struct Prefetched {
 struct LightShares {
     int width = 0;
     int height = 0;
-    std::vector<float> shares;  ///< [0, 1], row 0 at the top; 0 where the surface turns its back; -1: nothing there
+    std::vector<float>
+        shares;  ///< [0, 1], row 0 at the top; 0 where the surface turns its back; -1: nothing there
 };
 
 class MeshRaster;

@@ -1,0 +1,208 @@
+#include "renderer/marched_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "shaders/interop/config.h"
+
+namespace cairn::renderer {
+
+Place place_of(const View& view, const glm::dvec3& point, const voxelizer::Grid& grid) {
+    if (view.anchor) return {*view.anchor, point};
+    return {Tile{}, (point - grid.origin) / (grid.voxel_size * grid.resolution.x)};
+}
+
+bool is_soft(const View& view) {
+    const Light& light = view.light;
+    if (view.shadow != Shadow::hard || view.shadow_rays == 1) return false;
+    if (!light.positional) return light.angle > 0.0;
+    if (light.shape == LightShape::sphere) return light.radius > 0.0;
+    return light.half_u != glm::dvec3(0.0) || light.half_v != glm::dvec3(0.0);
+}
+
+namespace {
+
+void check_camera(const View& view) {
+    const Camera& camera = view.camera;
+    auto fail = [](const std::string& what, const std::string& way_out) {
+        throw Error(Fault::usage, "view", what, way_out);
+    };
+    if (view.width < 1 || view.height < 1 || view.width > 16384 || view.height > 16384) {
+        fail(fmt::format("a picture of {} x {} pixels", view.width, view.height),
+             "each side is between 1 and 16384");
+    }
+    if (!(camera.yfov > 0.0 && camera.yfov < 3.14159)) {
+        fail("the field of view is not between 0 and 180 degrees", "45 degrees suit most scenes");
+    }
+    if (!(view.pixel_error > 0.0)) fail("the pixel error is not positive", "1 is the default");
+    if (!(view.shadow_pixel_error >= 1.0 / 64.0 && view.shadow_pixel_error <= 64.0))
+        fail("the pixel error of shadows is not between 1/64 and 64", "1 is the default");
+    const glm::dvec3 forward = camera.target - camera.eye;
+    const double length = glm::length(forward);
+    if (!std::isfinite(length)) fail("the camera or its target is not finite", "use finite coordinates");
+    if (length == 0.0) fail("the camera looks at where it stands", "move its target away from it");
+    const double side = glm::length(glm::cross(forward / length, camera.up));
+    if (!std::isfinite(side) || side < 1e-9) {
+        fail("the camera's up direction is the one it looks along", "choose another up direction");
+    }
+    if (view.shadow_rays < 1 || view.shadow_rays > MAX_SHADOW_RAYS) {
+        fail(fmt::format("{} shadow rays a pixel", view.shadow_rays),
+             fmt::format("choose 1 to {}", MAX_SHADOW_RAYS));
+    }
+    if (!(view.light.radius >= 0.0) || !std::isfinite(view.light.radius))
+        fail("the light's radius is negative or not finite", "0 is a point");
+    if (!(view.light.angle >= 0.0 && view.light.angle < 1.5707))
+        fail("the light's angle is not between 0 and 90 degrees", "the sun's is 0.27 degrees");
+    if (!std::isfinite(glm::length(view.light.half_u)) || !std::isfinite(glm::length(view.light.half_v)))
+        fail("the light's half axes are not finite", "use finite ones");
+    const glm::dvec3 light = view.light.positional ? view.light.position : view.light.towards;
+    if (!std::isfinite(glm::length(light)) || (!view.light.positional && glm::length(light) == 0.0)) {
+        fail("the light has no direction", "give it a finite one that is not zero");
+    }
+}
+
+void check_anchor(const std::optional<Tile>& anchor, const TreeShape& shape) {
+    if (!anchor) return;
+    const bool has_level = anchor->level >= 0 && anchor->level <= shape.max_level;
+    const std::int64_t across = std::int64_t(1) << (has_level ? shape.n_shift() * anchor->level : 0);
+    if (!has_level || glm::any(glm::lessThan(anchor->position, glm::i64vec3(0))) ||
+        glm::any(glm::greaterThanEqual(anchor->position, glm::i64vec3(across)))) {
+        throw Error(Fault::usage, "view", "the tree has no tile where the camera is anchored",
+                    fmt::format("its levels are 0 to {}", shape.max_level));
+    }
+}
+
+/// The view without its anchor, for trees whose depth doubles can tell.
+View in_world(const View& view, const voxelizer::Grid& grid, const TreeShape& shape) {
+    if (!view.anchor) return view;
+    View out = view;
+    const double side = grid.voxel_size * grid.resolution.x;
+    const double across = std::ldexp(1.0, shape.n_shift() * view.anchor->level);
+    auto to_world = [&](const glm::dvec3& place) {
+        return grid.origin + (glm::dvec3(view.anchor->position) + place) * (side / across);
+    };
+    out.camera.eye = to_world(view.camera.eye);
+    out.camera.target = to_world(view.camera.target);
+    out.light.position = to_world(view.light.position);
+    out.light.radius *= side / across;
+    out.light.half_u *= side / across;
+    out.light.half_v *= side / across;
+    out.anchor.reset();
+    return out;
+}
+
+static_assert(int(LightShape::sphere) == LIGHT_CONE && int(LightShape::rectangle) == LIGHT_RECTANGLE &&
+              int(LightShape::disk) == LIGHT_DISK);
+
+/// @param voxel_size  of the voxels that the view is told in, in units of its light.
+void set_area_light(interop::MarchView& out, const View& view, double voxel_size) {
+    const Light& light = view.light;
+    const double lost = 2.0 * std::pow(std::sin(0.5 * light.angle), 2.0);
+    out.light_u = glm::vec4(glm::vec3(light.half_u / voxel_size), float(light.radius / voxel_size));
+    out.light_v = glm::vec4(glm::vec3(light.half_v / voxel_size), float(lost));
+    const LightShape shape = light.positional ? light.shape : LightShape::sphere;
+    out.area_light = glm::ivec4(is_soft(view) ? view.shadow_rays : 1, int(shape), 0, 0);
+}
+
+/// What of a view is told in voxels: of the finest level, from the root cube's low corner; or of the coarsest
+/// window, from its own.
+struct Placed {
+    glm::dvec3 eye{0.0};
+    glm::dvec3 light{0.0};   ///< when positional
+    glm::dvec3 centre{0.0};  ///< of the root cube
+    double side = 0.0;       ///< of the root cube
+    double voxel = 1.0;      ///< in the units that the view's lengths are told in
+};
+
+Placed in_voxels(const View& view, const voxelizer::Grid& grid) {
+    auto place = [&](const glm::dvec3& world) { return (world - grid.origin) / grid.voxel_size; };
+    const double side = grid.resolution.x;
+    return {place(view.camera.eye), place(view.light.position), glm::dvec3(0.5 * side), side,
+            grid.voxel_size};
+}
+
+Placed in_window(const View& view, const voxelizer::Grid& grid, const TreeShape& shape,
+                 const Window& window) {
+    auto place = [&](const Place& point) { return place_in(window, shape, point); };
+    const glm::dvec3 low = place({Tile{}, glm::dvec3(0.0)});
+    const glm::dvec3 high = place({Tile{}, glm::dvec3(1.0)});
+    const double unit = view.anchor ? std::ldexp(1.0, -shape.n_shift() * view.anchor->level)
+                                    : 1.0 / (grid.voxel_size * grid.resolution.x);
+    return {place(place_of(view, view.camera.eye, grid)), place(place_of(view, view.light.position, grid)),
+            0.5 * (low + high), high.x - low.x, 1.0 / ((high.x - low.x) * unit)};
+}
+
+interop::MarchView march_view(const View& view, const Placed& placed, int n) {
+    const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
+    const glm::dvec3 up = glm::cross(right, forward);
+    const double half_height = std::tan(0.5 * view.camera.yfov);
+    const double half_width = half_height * view.width / view.height;
+
+    // Levels are n apart: the nearest one, as in mip mapping, has voxels between 1 / sqrt(n) and sqrt(n)
+    // pixels.
+    const double cone = 2.0 * half_height / view.height * view.pixel_error * std::sqrt(double(n));
+
+    // Far from the scene a float's step is many voxels: then rays start near the root cube, from the plane
+    // that the eye moved forward lies in.
+    const glm::dvec3& eye = placed.eye;
+    const double distance = glm::dot(placed.centre - eye, forward);
+    const double skipped = distance > 3.0 * placed.side ? distance - 2.0 * placed.side : 0.0;
+
+    interop::MarchView out{};
+    out.eye = glm::vec4(glm::vec3(eye + forward * skipped), float(cone));
+    out.forward = glm::vec4(glm::vec3(forward), float(skipped));
+    out.right = glm::vec4(glm::vec3(right * half_width), 0.0F);
+    out.up = glm::vec4(glm::vec3(up * half_height), 0.0F);
+    out.light = view.light.positional ? glm::vec4(glm::vec3(placed.light), 1.0F)
+                                      : glm::vec4(glm::vec3(glm::normalize(view.light.towards)), 0.0F);
+    out.light_color = glm::vec4(view.light.color, view.light.ambient);
+    out.background = glm::vec4(view.background, float(view.shadow_pixel_error));
+    set_area_light(out, view, placed.voxel);
+    out.size_shadow = glm::ivec4(view.width, view.height, view.shadow == Shadow::hard ? 1 : 0, 0);
+    const auto finite = [](const glm::vec4& v) { return std::isfinite(glm::dot(v, glm::vec4(1.0F))); };
+    if (!finite(out.eye) || !finite(out.forward) || !finite(out.light)) {
+        throw Error(Fault::usage, "view", "the camera or the light is too far away for a float to tell",
+                    "bring it nearer to the scene");
+    }
+    return out;
+}
+
+}  // namespace
+
+void check(const View& view, const TreeShape& shape) {
+    check_camera(view);
+    check_anchor(view.anchor, shape);
+}
+
+std::uint32_t background_pixel(const glm::vec3& linear) {
+    std::uint32_t pixel = 0;
+    for (int channel = 0; channel < 3; ++channel) {
+        const double c = std::clamp(double(linear[channel]), 0.0, 1.0);
+        const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+        pixel |= std::uint32_t(std::lround(255.0 * encoded)) << (8 * channel);
+    }
+    return pixel;
+}
+
+Image background_image(const View& view, Rows rows) {
+    Image image{view.width, rows.count, {}};
+    const std::uint32_t pixel = background_pixel(view.background);
+    image.rgba.resize(std::size_t(view.width) * std::size_t(rows.count) * 4);
+    for (std::size_t i = 0; i < image.rgba.size(); ++i)
+        image.rgba[i] = std::uint8_t(pixel >> (8 * (i % 4)) & 0xFFU);
+    return image;
+}
+
+interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, const TreeShape& shape,
+                              const Window* coarsest) {
+    if (coarsest != nullptr) return march_view(view, in_window(view, grid, shape, *coarsest), shape.n);
+    const View unanchored = in_world(view, grid, shape);
+    return march_view(unanchored, in_voxels(unanchored, grid), shape.n);
+}
+
+}  // namespace cairn::renderer
