@@ -90,9 +90,6 @@ Image Renderer::march(const View& view, Rows rows, int shown, const std::functio
             "ask for rows that the picture has");
     }
     Parts& parts = *parts_;
-    if (is_soft(view) && !parts.marcher.has_soft_shadows()) {
-        throw Error(Fault::usage, "view", "soft shadows of a volume", "give it one shadow ray a pixel");
-    }
     if (!(view == parts.ahead.view)) parts.ahead = {view, parts.round, 0, false};
     const bool is_blended = parts.blends(view);
     const auto start = Clock::now();
@@ -140,7 +137,7 @@ Image Renderer::render(const View& view, const std::function<void(double)>& prog
 }
 
 LightShares Renderer::light_shares(const View& view, const std::function<void(double)>& progress) {
-    if (!parts_->marcher.has_soft_shadows()) {
+    if (!parts_->marcher.shows_light()) {
         throw Error(Fault::usage, "view", "the light at a volume is not that of one place",
                     "render its picture");
     }

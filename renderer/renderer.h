@@ -60,7 +60,7 @@ struct View {
     /// for, coarser data of its own. [1/64, 64]
     double shadow_pixel_error = 1.0;
     /// Rays a pixel to the light, [1, 512]: one goes to its middle, more to samples of all of it, which are
-    /// stratified and the same in every frame. Volumes take one.
+    /// stratified and the same in every frame. In a volume they leave from where half of what is seen lies.
     int shadow_rays = 1;
     Show show = Show::surface;
     /// The camera and the light are told from this tile's low corner, in units of its side, instead of in the

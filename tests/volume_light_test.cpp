@@ -1,5 +1,7 @@
 // Light on volumes: gradients for normals, and shadows by what the light loses on its way.
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -157,6 +159,128 @@ TEST_F(VolumeLight, WhatIsOpaqueStopsTheLight) {
     view.light.position = {32.0, 36.0, 32.0};
     const Image lamp = Renderer(volume, transfer, small_pool).render(view);
     EXPECT_GT(lamp.rgba[std::size_t(4 * (6 * 16 + 8))], 128);
+}
+
+/// Looks from between the floor of fog_over_floor() and what hangs over it, straight down.
+View view_of_the_floor() {
+    View view;
+    view.width = 32;
+    view.height = 24;
+    view.camera = {{32.0, 30.0, 32.0}, {32.0, 8.0, 32.0}, {0, 0, 1}, 1.0};
+    view.pixel_error = 1e-6;
+    view.light.positional = true;
+    view.light.position = {32.0, 56.0, 32.0};
+    view.light.ambient = 0.0F;
+    return view;
+}
+
+/// Light that arrives at each pixel of the floor, as a share of what would without a shadow.
+std::vector<double> shares_on_the_floor(const scenes::Volume& volume, const TransferFunction& transfer,
+                                        View view) {
+    const Image shadowed = Renderer(volume, transfer, small_pool).render(view);
+    view.shadow = renderer::Shadow::none;
+    const Image lit = Renderer(volume, transfer, small_pool).render(view);
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < lit.rgba.size(); i += 4)
+        shares.push_back(linear_of(shadowed.rgba[i]) / linear_of(lit.rgba[i]));
+    return shares;
+}
+
+TEST_F(VolumeLight, PenumbraOfAnEdgeInAVolumeComesToTheClosedForm) {
+    scenes::Volume volume = fog_over_floor();
+    // A thin opaque plate over the half x < 32 instead of the fog.
+    for (std::size_t i = 0; i < volume.samples.size(); ++i) {
+        const std::size_t x = i % 64;
+        const std::size_t y = i / 64 % 64;
+        volume.samples[i] = y < 8 || (y >= 40 && y < 42 && x < 32) ? 65535 : 0;
+    }
+    const TransferFunction transfer(
+        {{0.0, glm::dvec3(1.0), 0.0}, {0.499, glm::dvec3(1.0), 0.0}, {0.5, glm::dvec3(1.0), 100.0}});
+    View view = view_of_the_floor();
+    view.light.shape = renderer::LightShape::rectangle;
+    view.light.half_u = {6.0, 0.0, 0.0};
+    view.light.half_v = {0.0, 0.0, 3.0};
+    view.shadow_rays = 256;
+    const std::vector<double> shares = shares_on_the_floor(volume, transfer, view);
+    int penumbra = 0;
+    double squares = 0.0;
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const glm::dvec3 direction = pixel_direction(view, x, y);
+            const double at = view.camera.eye.x + direction.x * (8.0 - 30.0) / direction.y;
+            // From a point of the floor, what of the light lies left of the plate's two edges is hidden.
+            double hidden = 0.0;
+            for (const double height : {40.0, 42.0}) {
+                const double edge = at + (32.0 - at) * (56.0 - 8.0) / (height - 8.0);
+                hidden = std::max(hidden, std::clamp((edge - 26.0) / 12.0, 0.0, 1.0));
+            }
+            const double share = shares[std::size_t(y * view.width + x)];
+            squares += (share - (1.0 - hidden)) * (share - (1.0 - hidden));
+            if (hidden < 0.02 || hidden > 0.98) continue;
+            ++penumbra;
+            ASSERT_NEAR(share, 1.0 - hidden, 0.06) << "pixel (" << x << ", " << y << ")";
+        }
+    }
+    EXPECT_GT(penumbra, 80);
+    EXPECT_LT(std::sqrt(squares / double(shares.size())), 0.02);
+}
+
+// Not a bit a ray, but what each has lost on its way.
+TEST_F(VolumeLight, SoftLightThroughFogIsTheMeanOfWhatIsLeftOfIt) {
+    const double sigma = 0.08;
+    const TransferFunction transfer({{0.0, glm::dvec3(1.0), 0.0},
+                                     {128.0 / 255.0, glm::dvec3(1.0), sigma},
+                                     {0.9, glm::dvec3(1.0), sigma},
+                                     {1.0, glm::dvec3(1.0), 50.0}});
+    View view = view_of_the_floor();
+    view.light.position = {32.0, 60.0, 32.0};
+    view.light.shape = renderer::LightShape::disk;
+    view.light.half_u = {30.0, 0.0, 0.0};
+    view.light.half_v = {0.0, 0.0, 30.0};
+    view.shadow_rays = 64;
+    const std::vector<double> shares = shares_on_the_floor(fog_over_floor(), transfer, view);
+    for (int y = 0; y < view.height; y += 3) {
+        for (int x = 0; x < view.width; x += 3) {
+            const glm::dvec3 direction = pixel_direction(view, x, y);
+            const glm::dvec3 point = view.camera.eye + direction * (8.0 - 30.0) / direction.y;
+            double sum = 0.0;
+            constexpr int steps = 64;
+            for (int i = 0; i < steps * steps; ++i) {
+                const double radius = 30.0 * std::sqrt((i % steps + 0.5) / steps);
+                const double angle = 2.0 * 3.14159265358979 * (i / steps + 0.5) / steps;
+                const glm::dvec3 there(32.0 + radius * std::cos(angle), 60.0,
+                                       32.0 + radius * std::sin(angle));
+                sum += std::exp(-sigma * 16.0 * glm::distance(there, point) / (60.0 - 8.0));
+            }
+            EXPECT_NEAR(shares[std::size_t(y * view.width + x)], sum / (steps * steps), 0.012)
+                << "pixel (" << x << ", " << y << ")";
+        }
+    }
+}
+
+TEST_F(VolumeLight, SoftShadowIsTheSameFromTinyPoolsAndWithinABudget) {
+    const scenes::Volume volume = blobs(glm::ivec3(96), 40);
+    const TransferFunction transfer = ramp(20.0);
+    View view;
+    view.width = 40;
+    view.height = 30;
+    view.camera = renderer::framing_camera({glm::dvec3(-1.0), glm::dvec3(1.0)}, 4.0 / 3.0);
+    view.pixel_error = 0.3;  // 96 voxels on 40 pixels
+    view.light.angle = 0.2;
+    view.shadow_rays = 8;
+    Renderer roomy(volume, transfer, small_pool);
+    const Image expected = roomy.render(view);
+    Renderer scarce(volume, transfer, {.brick_pool_bytes = 1U << 18U});
+    EXPECT_EQ(scarce.render(view).rgba, expected.rgba);
+    EXPECT_GT(scarce.statistics().bricks_evicted, 0U);
+    Renderer hurried(volume, transfer, small_pool);
+    Image image = hurried.render_within(view, 0.0);
+    for (int frame = 0; frame < 2000 && !hurried.statistics().converged; ++frame)
+        image = hurried.render_within(view, 0.0);
+    EXPECT_TRUE(hurried.statistics().converged);
+    EXPECT_EQ(image.rgba, expected.rgba);
+    view.shadow_rays = 1;
+    EXPECT_NE(roomy.render(view).rgba, expected.rgba);
 }
 
 }  // namespace

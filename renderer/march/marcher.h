@@ -75,7 +75,7 @@ struct MarchKind {
     std::string shadow = "march/shadow.comp.glsl";
     gl::Defines defines;
     std::function<void()> bind;  ///< before each pass; may be empty
-    bool soft_shadows = true;    ///< the shadow rays know SOFT_SHADOWS and SHOW_LIGHT
+    bool shows_light = true;     ///< the shadow rays know SHOW_LIGHT
 };
 
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
@@ -105,7 +105,7 @@ public:
     [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool,
                                       PassKind kind = PassKind::patient);
 
-    [[nodiscard]] bool has_soft_shadows() const { return kind_.soft_shadows; }
+    [[nodiscard]] bool shows_light() const { return kind_.shows_light; }
 
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
 

@@ -1,15 +1,22 @@
-// One thread is one waiting shadow ray: from where a primary ray gathered most in a volume, to the light.
+// One thread is one waiting shadow ray, or a pixel's share of them: from where a primary ray gathered most in a volume, to
+// the light.
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2 VOLUME_STEPS=2
 // defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=1 VOLUME_STEPS=1 HAS_CONSTANT=1
 // defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=0 VOLUME_STEPS=16
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2 VOLUME_STEPS=1 WITH_MESHES
 // defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2 VOLUME_STEPS=2 TILE_BLOCKS=1
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=2 VOLUME_STEPS=2 SOFT_SHADOWS
+// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=1 VOLUME_STEPS=1 HAS_CONSTANT=1 WITH_MESHES SOFT_SHADOWS
 #define RAYS_WIDEN 0
 #define VISIT_TURNS VOLUME_STEPS
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #include "march/volume.glsl"
 #include "march/volume_light.glsl"
+#ifdef SOFT_SHADOWS
+#include "march/area_light.glsl"
+layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { uvec2 shadow_sums[]; };
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -48,6 +55,61 @@ float side_shown(float width) {
     return float(cell_side(shift));
 }
 
+vec3 receiver;
+float width;  // of a pixel's cone there
+
+// A ray from the receiver to the light, or on from where it stood. False when it must wait: then it is stored.
+bool trace(vec3 to_light, float reach, bool starts, inout RayState state, inout int turns) {
+    Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
+    bool inside = true;
+    if (starts) {
+        visibility = 1.0;
+        ray.t = volume.shadow_start * side_shown(width);
+        inside = enter_root(ray);
+    } else {
+        load_position(ray, state);
+        visibility = uintBitsToFloat(state.voxel_t_weight.w);
+    }
+    if (inside && march(ray, turns) == MARCH_MISSING) {
+        store_position(state, ray);
+        state.voxel_t_weight.w = floatBitsToUint(visibility);
+        return false;
+    }
+    visibility = visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
+    return true;
+}
+
+// How much of the light reaches the receiver. False when a ray must wait.
+#ifdef SOFT_SHADOWS
+bool find_light(ivec2 pixel, uint index, bool starts, inout RayState state) {
+    const uint rays_a_pixel = uint(min(view.area_light.x, MAX_SHADOW_RAYS));
+    uint first = 0u;
+    float sum = 0.0;
+    if (!starts) {
+        const uvec2 stored = shadow_sums[index];
+        first = stored.x;
+        sum = uintBitsToFloat(stored.y);
+    }
+    int turns = 0;
+    for (uint i = first; i < rays_a_pixel; ++i) {
+        const LightSample there = light_sample(receiver, pixel, i);
+        if (!trace(there.direction, there.reach, starts || i != first, state, turns)) {
+            shadow_sums[index] = uvec2(i, floatBitsToUint(sum));
+            return false;
+        }
+        sum += visibility;
+    }
+    visibility = sum / float(rays_a_pixel);
+    return true;
+}
+#else
+bool find_light(ivec2 pixel, uint index, bool starts, inout RayState state) {
+    int turns = 0;
+    const float reach = view.light.w > 0.5 ? distance(view.light.xyz, receiver) : 1e30;
+    return trace(direction_to_light(receiver), reach, starts, state, turns);
+}
+#endif
+
 void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= ray_count) return;
@@ -56,28 +118,15 @@ void main() {
     RayState state = rays[index];
 
     const PixelRay seen = pixel_ray(pixel);
-    const float width = view.background.w * view.eye.w * (seen.skipped + state.normal_depth.w);
-    const vec3 receiver = seen.origin + seen.direction * state.normal_depth.w;
-    const float reach = view.light.w > 0.5 ? distance(view.light.xyz, receiver) : 1e30;
-    Ray ray = make_ray(receiver, direction_to_light(receiver), reach, width, 0.0);
-    bool inside = true;
-    if (all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)))) {
-        visibility = 1.0;
-        ray.t = volume.shadow_start * side_shown(width);
-        inside = enter_root(ray);
-    } else {
-        load_position(ray, state);
-        visibility = uintBitsToFloat(state.voxel_t_weight.w);
-    }
-
-    const int end = inside ? march(ray) : MARCH_DONE;
+    width = view.background.w * view.eye.w * (seen.skipped + state.normal_depth.w);
+    receiver = seen.origin + seen.direction * state.normal_depth.w;
+    const bool starts = all(equal(state.voxel_t_weight.xy, uvec2(0xFFFFFFFFu)));
+    const bool found = find_light(pixel, index, starts, state);
     leave_report(index);
-    if (end == MARCH_MISSING) {
-        store_position(state, ray);
-        state.voxel_t_weight.w = floatBitsToUint(visibility);
+    if (!found) {
         rays[index] = state;
         lists[list_out + atomicAdd(counters.waiting_shadow, 1u)] = index;
         return;
     }
-    write_volume_pixel(pixel, state, visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0);
+    write_volume_pixel(pixel, state, visibility);
 }
