@@ -87,7 +87,7 @@ struct MeshRaster::Parts {
     void show(const voxelizer::GpuSurface& shown) {
         surface = &shown;
         indices.clear();
-        triangle_count = 0;
+        triangle_count = shown.far_triangles.size();
         std::size_t largest = 1;
         for (const voxelizer::GpuSurfaceChunk& chunk : shown.chunks) {
             indices.push_back(index_buffer(chunk));
