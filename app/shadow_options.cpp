@@ -26,7 +26,8 @@ Value named(const char* option, const std::string& text, const Names<Value>& nam
         if (text == name) return value;
         known += fmt::format("{}{}", known.empty() ? "" : ", ", name);
     }
-    throw Error(Fault::usage, option, fmt::format("there is no \"{}\"", text), fmt::format("choose of {}", known));
+    throw Error(Fault::usage, option, fmt::format("there is no \"{}\"", text),
+                fmt::format("choose of {}", known));
 }
 
 double positive(const char* option, double value) {
@@ -147,11 +148,6 @@ renderer::Light light_of(const ShadowOptions& options, const renderer::Light& gi
     return light;
 }
 
-bool has_extent(const renderer::Light& light) {
-    if (!light.positional) return light.angle > 0.0;
-    return light.shape != renderer::LightShape::sphere || light.radius > 0.0;
-}
-
 }  // namespace
 
 void add_shadow_options(CLI::App& verb, ShadowOptions& options) {
@@ -188,6 +184,12 @@ void add_shadow_options(CLI::App& verb, ShadowOptions& options) {
                       [&](const std::string& text) {
                           options.truth_samples = parse_int("--truth-samples", text, 64, max_truth_samples);
                       });
+    verb.add_option_function<std::string>(
+            "--truth-cache", [&](const std::string& text) { options.truth_cache = text; },
+            "keeps what Embree found of a soft light in this folder,\nand takes it from there when nothing "
+            "has "
+            "changed")
+        ->type_name("DIR");
     add_common_options(verb, options.common);
 }
 
@@ -212,7 +214,7 @@ ShadowTask make_shadow_task(const ShadowOptions& options) {
     task.shown = scenes::part_of(task.input.snapshot, both);
     task.view = view_of(options.view, task.input.snapshot);
     task.view.light = light_of(options, task.view.light, task.shown.bounds);
-    const bool extended = has_extent(task.view.light);
+    const bool extended = renderer::has_extent(task.view.light);
     task.view.shadow_rays = options.rays.value_or(extended ? default_soft_rays : 1);
     task.is_soft = extended && task.view.shadow_rays > 1;
     return task;

@@ -34,6 +34,7 @@ struct ShadowOptions {
     renderer::SoftShadowOptions map;
     bool map_given = false;  ///< any of its options
     int truth_samples = 256;
+    std::optional<std::filesystem::path> truth_cache;
 };
 void add_shadow_options(CLI::App& verb, ShadowOptions& options);
 

@@ -11,6 +11,7 @@
 #include "app/shadow_methods.h"
 #include "app/shadow_options.h"
 #include "app/verbs.h"
+#include "reference/shadow_truth.h"
 
 namespace cairn::app {
 namespace {
@@ -41,17 +42,23 @@ ShadowResult shadow_by(ShadowMethod method, const ShadowTask& task, const Shadow
 
 void add_comparison(Report& report, const ShadowTask& task, const ShadowOptions& options,
                     const ShadowResult& shadow) {
-    const ShadowResult truth = shadow_by_embree(task, options);
-    const ShadowError error = error_of(shadow.shares, truth.shares);
+    const ShadowResult truth = shadow_by_embree(task, options, options.truth_cache);
+    const reference::ShadowError error = reference::shadow_error(shadow.shares, truth.shares);
     report.add("shadowable_pixels", error.pixels);
     report.add("shadowed_pixels", error.shadowed);
     report.add("hard_disagreement", error.disagreement());
     report.add("too_light_pixels", error.too_light);
     report.add("too_dark_pixels", error.too_dark);
-    report.add("mean_absolute_error", error.mean_absolute);
-    report.add("rmse", error.rmse);
+    report.add("mean_absolute_error", error.mean_absolute());
+    report.add("mean_error_in_shadow", error.mean_in_shadow());
+    report.add("rmse", error.rmse());
     report.add("max_error", error.greatest);
-    report.add("truth_ms", truth.milliseconds);
+    report.add("truth_standard_error", truth.standard_error);
+    if (truth.cached) {
+        report.add("truth", "from the cache");
+    } else {
+        report.add("truth_ms", truth.milliseconds);
+    }
     if (options.difference) write_png(difference_image(shadow, truth.shares), *options.difference);
 }
 

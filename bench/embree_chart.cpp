@@ -11,6 +11,7 @@
 #include "bench/samples.h"
 #include "gl/context.h"
 #include "reference/image.h"
+#include "reference/view.h"
 #include "renderer/renderer.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
@@ -90,10 +91,8 @@ private:
     void beside_embree(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                        const renderer::View& view) {
         renderer::Renderer ours(scene, snapshot, {}, options_.shaders);
-        const reference::ReferenceCamera camera{view.camera.eye, view.camera.target, view.camera.up,
-                                                view.camera.yfov};
-        reference::ReferenceLight light;
-        light.towards = view.light.towards;
+        const reference::ReferenceCamera camera = reference::camera_of(view.camera);
+        const reference::ReferenceLight light = reference::light_of(view.light);
         const reference::ImageTracer embree(scene, snapshot);
         using Rays = reference::ImageTracer::Rays;
         const auto trace = [&](Rays rays) {

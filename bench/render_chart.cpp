@@ -13,6 +13,7 @@
 #include "bench/render_plot.h"
 #include "bench/samples.h"
 #include "reference/image.h"
+#include "reference/view.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 
@@ -69,17 +70,14 @@ Errors errors_of(const renderer::Image& ours, const reference::ShadedImage& trut
 
 reference::ShadedImage truth_of(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                                 const renderer::View& view) {
-    const reference::ReferenceCamera camera{view.camera.eye, view.camera.target, view.camera.up,
-                                            view.camera.yfov};
-    reference::ReferenceLight light;
-    light.towards = view.light.towards;
     reference::Shading shading;
     shading.light_color = view.light.color;
     shading.ambient = view.light.ambient;
     shading.background = view.background;
     shading.shadows = view.shadow == renderer::Shadow::hard;
     return reference::ImageTracer(scene, snapshot)
-        .shade(camera, light, shading, view.width, view.height, samples_a_side);
+        .shade(reference::camera_of(view.camera), reference::light_of(view.light), shading, view.width,
+               view.height, samples_a_side);
 }
 
 /// Frames in turn, over all that is varied.

@@ -25,9 +25,9 @@ struct AreaLight {
 };
 
 struct AreaLightOptions {
-    double standard_error = 0.005;  ///< sampling of a point stops below it
-    int least_samples = 256;        ///< of every point, however clear it looks
-    int most_samples = 65536;       ///< sampling of a point stops here in any case
+    double standard_error = 1.0 / 512;  ///< sampling of a point stops below it
+    int least_samples = 256;            ///< of every point, however clear it looks
+    int most_samples = 65536;           ///< sampling of a point stops here in any case
     std::uint64_t seed = 1;
     int threads = 0;  ///< 0 = all cores; the result does not depend on it
 };

@@ -1,7 +1,7 @@
+#include "renderer/camera.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "renderer/renderer.h"
 
 namespace cairn::renderer {
 

@@ -17,11 +17,7 @@ Place place_of(const View& view, const glm::dvec3& point, const voxelizer::Grid&
 }
 
 bool is_soft(const View& view) {
-    const Light& light = view.light;
-    if (view.shadow != Shadow::hard || view.shadow_rays == 1) return false;
-    if (!light.positional) return light.angle > 0.0;
-    if (light.shape == LightShape::sphere) return light.radius > 0.0;
-    return light.half_u != glm::dvec3(0.0) || light.half_v != glm::dvec3(0.0);
+    return view.shadow == Shadow::hard && view.shadow_rays > 1 && has_extent(view.light);
 }
 
 namespace {

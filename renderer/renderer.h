@@ -10,6 +10,8 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
+#include "renderer/camera.h"
+#include "renderer/light.h"
 #include "renderer/march/tile_queries.h"
 #include "renderer/march/transfer_function.h"
 #include "renderer/march/traversal.h"
@@ -21,44 +23,6 @@
 #include "scenes/volume.h"
 
 namespace cairn::renderer {
-
-/// A pinhole camera. Pixel (0, 0) is at the top left.
-struct Camera {
-    glm::dvec3 eye{0.0, 0.0, 1.0};
-    glm::dvec3 target{0.0};
-    glm::dvec3 up{0.0, 1.0, 0.0};
-    double yfov = 0.785398163397448;  ///< radians, the whole angle, in (0, pi)
-    bool operator==(const Camera&) const = default;
-};
-
-/// Looks at the whole of the bounds from the front, above and to the right.
-[[nodiscard]] Camera framing_camera(const scenes::Bounds& bounds, double aspect);
-
-/// Where a camera that moved from `before` to `now` will be after as much time again, if it goes on alike.
-[[nodiscard]] Camera extrapolated(const Camera& before, const Camera& now);
-
-/// What of a positional light there is around its middle.
-enum class LightShape : std::uint8_t {
-    sphere,     ///< of Light::radius, which may be 0: a point
-    rectangle,  ///< middle +- half_u +- half_v; it shines to both sides
-    disk,       ///< the ellipse with these half axes
-};
-
-/// One light, white by default. It shades as its middle does; its extent makes shadows soft, where a view
-/// asks for more than one shadow ray.
-struct Light {
-    bool positional = false;
-    glm::dvec3 position{0.0};            ///< of the middle, world, when positional
-    glm::dvec3 towards{0.4, 0.8, 0.45};  ///< direction to the light, when not
-    LightShape shape = LightShape::sphere;
-    double radius = 0.0;     ///< of a sphere
-    glm::dvec3 half_u{0.0};  ///< of a rectangle or a disk
-    glm::dvec3 half_v{0.0};
-    double angle = 0.0;  ///< of a directional light: radians from its middle to its edge, [0, pi / 2)
-    glm::vec3 color{1.0F};
-    float ambient = 0.25F;  ///< light from everywhere, as a share of the light's own
-    bool operator==(const Light&) const = default;
-};
 
 enum class Shadow : std::uint8_t { none, hard };
 

@@ -6,7 +6,7 @@ packages=(
   g++ cmake ninja-build pkg-config python3-glad
   # linked, or compiled in
   libglm-dev libfmt-dev libglfw3-dev libegl-dev libtinygltf-dev libstb-dev nlohmann-json3-dev
-  libdraco-dev libmeshoptimizer-dev zlib1g-dev libembree-dev libtbb-dev libcli11-dev libimgui-dev
+  libdraco-dev libmeshoptimizer-dev zlib1g-dev libembree-dev libtbb-dev libxxhash-dev libcli11-dev libimgui-dev
   # opened when the program runs: OpenGL without a GPU and without a display
   libegl1 libgl1-mesa-dri
   # to test, and to have something to show

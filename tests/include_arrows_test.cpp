@@ -34,11 +34,12 @@ const std::vector<Folder> folders = {
     {"gl/", {"gl/", "shaders/", "base/"}},
     {"scenes/", {"scenes/", "base/"}},
     {"voxelizer/", {"voxelizer/", "gl/", "scenes/", "shaders/interop/", "base/"}},
-    // Of the voxelizer only plain types and what defines an exact answer: none of what the reference is to
-    // judge.
+    // Of the voxelizer and the renderer only plain types and what defines an exact answer: none of what the
+    // reference is to judge.
     {"reference/",
      {"reference/", "scenes/", "shaders/interop/", "base/", "voxelizer/grid.h", "voxelizer/bit_grid.h",
-      "voxelizer/surface.h", "voxelizer/exact_mask.h", "voxelizer/wide_integer.h"}},
+      "voxelizer/surface.h", "voxelizer/exact_mask.h", "voxelizer/wide_integer.h", "renderer/camera.h",
+      "renderer/light.h"}},
     {"renderer/pool/", {"renderer/pool/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/produce/",
      {"renderer/produce/", "renderer/pool/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/"}},

@@ -12,3 +12,7 @@ cairn_test(area_light_test
   LIBRARIES cairn::renderer cairn::reference fmt::fmt
   TIMEOUT 120)
 cairn_test(node_selection_test SOURCES node_selection_test.cpp LIBRARIES cairn::scenes fmt::fmt)
+
+cairn_test(shadow_truth_test
+  SOURCES shadow_truth_test.cpp scratch_folder.h
+  LIBRARIES cairn::reference cairn::renderer)

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "reference/area_light.h"
+#include "reference/image.h"
+#include "renderer/camera.h"
+#include "renderer/light.h"
+#include "scenes/node_selection.h"
+#include "scenes/scene.h"
+#include "scenes/snapshot.h"
+
+namespace cairn::reference {
+
+/// A picture whose shadow is asked for. All of the snapshot is seen and throws shadows.
+struct ShadowQuestion {
+    const scenes::Scene& scene;
+    const scenes::Snapshot& snapshot;
+    const scenes::NodeSelection& receivers;  ///< nodes whose pixels count
+    const renderer::Camera& camera;
+    const renderer::Light& light;
+    int width = 512;  ///< pixels
+    int height = 512;
+};
+
+/// The pixels that can be shadowed: their centre's ray meets a receiver first, and its triangle, of which the
+/// eye sees either side, faces the light's middle.
+struct ShadowReceivers {
+    ReferenceImage seen;              ///< with the hard shadow of the light's middle
+    std::vector<std::size_t> pixels;  ///< row after row
+    std::vector<glm::dvec3> points;   ///< world, one a pixel
+    std::vector<glm::dvec3> normals;  ///< of the triangle, unit, to the eye's side
+};
+/// @param tracer  of the question's scene and snapshot.
+[[nodiscard]] ShadowReceivers shadow_receivers(const ImageTracer& tracer, const ShadowQuestion& question);
+
+/// What of the light arrives, for each pixel of the picture: [0, 1]; -1 where nothing can be shadowed.
+/// @param values  one a pixel of `receivers`.
+[[nodiscard]] std::vector<float> shares_of(const ShadowReceivers& receivers, std::span<const float> values);
+/// The same with a hard shadow: 0 or 1.
+[[nodiscard]] std::vector<float> hard_shares(const ShadowReceivers& receivers);
+
+struct SoftShares {
+    std::vector<float> shares;
+    double greatest_standard_error = 0.0;
+    double milliseconds = 0.0;  ///< 0 from the cache
+    bool cached = false;
+};
+/// The same with a soft shadow.
+/// @param cache  a folder that keeps answers by a hash of all that they depend on; made if need be.
+/// @throws Error  as area_light_visibility() does; Fault::usage when the folder cannot be written.
+[[nodiscard]] SoftShares soft_shares(const ImageTracer& tracer, const ShadowQuestion& question,
+                                     const ShadowReceivers& receivers, const AreaLightOptions& options = {},
+                                     const std::optional<std::filesystem::path>& cache = std::nullopt);
+
+/// How far a shadow is from the truth, over the pixels for which both have a share.
+struct ShadowError {
+    std::size_t pixels = 0;
+    std::size_t shadowed = 0;   ///< of them, less than half of the light arrives in truth
+    std::size_t too_light = 0;  ///< half of the light and more arrives, where in truth less does
+    std::size_t too_dark = 0;   ///< the other way round
+    std::size_t in_shadow = 0;  ///< in shadow or penumbra: not all of the light arrives in truth
+    double absolute_sum = 0.0;
+    double square_sum = 0.0;
+    double greatest = 0.0;
+
+    [[nodiscard]] double disagreement() const;
+    [[nodiscard]] double mean_absolute() const;
+    [[nodiscard]] double rmse() const;
+    /// All absolute differences over the pixels in shadow or penumbra (Atty et al. 2005, section 4.2).
+    [[nodiscard]] double mean_in_shadow() const;
+};
+/// @param shares  as `truth`; negative: nothing to compare there. Two rasterizers need not agree on what a
+///                pixel at an edge shows.
+[[nodiscard]] ShadowError shadow_error(std::span<const float> shares, std::span<const float> truth);
+
+}  // namespace cairn::reference
