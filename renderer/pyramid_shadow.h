@@ -13,7 +13,7 @@ namespace cairn::renderer {
 
 struct PyramidShadowOptions {
     int resolution = 512;  ///< voxels across the scene: a power of two, 8 to 2048
-    ColumnMask mask = ColumnMask::skipping;
+    ColumnMask mask = ColumnMask::adaptive;
 };
 
 /// Of the last frame, by the wall clock from an idle driver to an idle driver. What a frame did not have to

@@ -84,8 +84,8 @@ gl::Program build(const ColumnPyramid& pyramid, ColumnMask mask) {
     return program;
 }
 
-constexpr std::array masks = {ColumnMask::mip_level, ColumnMask::adaptive, ColumnMask::skipping};
-constexpr std::array mask_names = {"mip level", "adaptive", "skipping"};
+constexpr std::array masks = {ColumnMask::mip_level, ColumnMask::adaptive};
+constexpr std::array mask_names = {"mip level", "adaptive"};
 
 /// A grid of bits and its pyramid.
 class Columns {
@@ -344,12 +344,10 @@ TEST_F(ColumnRays, AnyRayFindsTheFirstVoxelThatRoundingCannotHide) {
         for (int i = 0; i < count; ++i)
             probes.push_back(free_probe(side, dice));
         const auto found = columns.trace(probes, ColumnMask::adaptive);
-        for (const ColumnMask mask : {ColumnMask::mip_level, ColumnMask::skipping}) {
-            const auto other = columns.trace(probes, mask);
-            for (std::size_t i = 0; i < probes.size(); ++i)
-                ASSERT_EQ(glm::ivec3(other[i].voxel_skipped), glm::ivec3(found[i].voxel_skipped))
-                    << mask_names[std::size_t(mask)] << ", ray " << i << " " << text_of(probes[i]);
-        }
+        const auto other = columns.trace(probes, ColumnMask::mip_level);
+        for (std::size_t i = 0; i < probes.size(); ++i)
+            ASSERT_EQ(glm::ivec3(other[i].voxel_skipped), glm::ivec3(found[i].voxel_skipped))
+                << "mip level, ray " << i << " " << text_of(probes[i]);
         int hits = 0;
         int wrong = 0;
         for (std::size_t i = 0; i < probes.size() && wrong < 5; ++i) {
@@ -386,10 +384,8 @@ TEST_F(ColumnRays, AdaptiveMasksTakeFewerTurns) {
         for (const Probe& probe : columns.trace(probes, masks[m]))
             turns[m] += probe.found.y;
     }
-    RecordProperty("turns_a_ray", fmt::format("{:.1f}, {:.1f}, {:.1f}", turns[0] / 20000.0,
-                                              turns[1] / 20000.0, turns[2] / 20000.0));
-    EXPECT_LT(turns[1], turns[0]) << "adaptive, mip level";
-    EXPECT_LT(turns[2], turns[1]) << "skipping, adaptive";
+    RecordProperty("turns_a_ray", fmt::format("{:.1f}, {:.1f}", turns[0] / 20000.0, turns[1] / 20000.0));
+    EXPECT_LT(turns[1], 0.7 * turns[0]) << "adaptive, mip level";
 }
 
 TEST_F(ColumnRays, OtherResolutionsAreRefused) {

@@ -8,7 +8,6 @@ namespace cairn::renderer {
 enum class ColumnMask : std::uint8_t {
     mip_level,  ///< the node's cube (Forest et al. 2009, Figure 10(a)): for comparison
     adaptive,   ///< of the whole column, the voxels that the ray passes (Figure 10(b))
-    skipping,   ///< the same; and the ray goes on to the first slice that is not empty, before it refines
 };
 
 }  // namespace cairn::renderer

@@ -13,8 +13,7 @@ namespace {
 constexpr unsigned group_size = 64;
 
 static_assert(int(ColumnMask::mip_level) == COLUMN_MASK_MIP_LEVEL &&
-              int(ColumnMask::adaptive) == COLUMN_MASK_ADAPTIVE &&
-              int(ColumnMask::skipping) == COLUMN_MASK_SKIPPING);
+              int(ColumnMask::adaptive) == COLUMN_MASK_ADAPTIVE);
 
 }  // namespace
 

@@ -173,7 +173,6 @@
 #define COLUMN_TEXEL_BITS 128
 #define COLUMN_MASK_MIP_LEVEL 0
 #define COLUMN_MASK_ADAPTIVE 1
-#define COLUMN_MASK_SKIPPING 2
 // Voxels a side, log2. A ray turns its loops fewer than 12 times for each, which past TURN_BUDGET must stay under the turns
 // that llvmpipe grants (VOXEL_REGION_SIDE).
 #define COLUMN_LEAST_LEVELS 3

@@ -2,7 +2,7 @@
 // (Forest et al. 2009, section 3.1). What many rays leave undone goes on in the next pass, between two rays.
 // defines: COLUMN_LEVELS=9 COLUMN_MASK=0
 // defines: COLUMN_LEVELS=9 COLUMN_MASK=1
-// defines: COLUMN_LEVELS=3 COLUMN_MASK=2 SOFT_SHADOWS
+// defines: COLUMN_LEVELS=3 COLUMN_MASK=0 SOFT_SHADOWS
 // defines: COLUMN_LEVELS=11 COLUMN_MASK=1 SOFT_SHADOWS
 #include "interop/config.h"
 #include "interop/bindings.h"

@@ -4,14 +4,17 @@
 // A column of some level is empty for a ray when none of its bits is set between the voxels where the ray enters and leaves
 // it (their adaptive mask, Figure 10(b)): then the ray steps over it, and goes on with the largest column that begins there.
 // Otherwise it goes down a level, and in a column of voxels the bits that are set are the voxels that it meets. With
-// COLUMN_MASK_MIP_LEVEL a node is a cube, as in Figure 10(a). With COLUMN_MASK_SKIPPING the ray first goes on to the slice of
-// the first bit that is set: before it there is nothing at any finer level either.
+// COLUMN_MASK_MIP_LEVEL a node is a cube, as in Figure 10(a).
 //
 // Which voxels a ray crosses, and in which order, is told by the times at which it crosses their planes, as floats; of equal
 // ones x comes first, then y, then z. So it does not depend on the columns by which it is found, and every step moves one
 // coordinate by at least one.
 //
 // Needs the defines COLUMN_LEVELS and COLUMN_MASK.
+
+// Where a ray begins: on a surface, where larger columns are not empty. From the root on, as Forest et al. begin, the same
+// voxels are found later.
+#define COLUMN_START_LEVEL 2
 #define TREE_N 2
 #define BRICK_M 8
 #define MAX_LEVEL (COLUMN_LEVELS - 3)
@@ -131,7 +134,7 @@ bool trace_columns(inout Ray ray, inout int turns) {
     ray.voxel = clamp(entered - step, ivec3(0), ivec3(COLUMN_SIDE - 1));
     ray.voxel = mix(voxel_at(ray, ray.t, bvec3(true), clamp(entered + step, ivec3(0), ivec3(COLUMN_SIDE - 1))), entered,
                     ray.inert);
-    int level = COLUMN_LEVELS;
+    int level = min(COLUMN_START_LEVEL, COLUMN_LEVELS);
     for (;;) {
         ++turns;
         const Crossed way = cross_node(ray, level);
@@ -140,13 +143,6 @@ bool trace_columns(inout Ray ray, inout int turns) {
             if (!leave_node(ray, way, level)) return false;
         } else if (level > 0) {
             --level;
-#if COLUMN_MASK == COLUMN_MASK_SKIPPING
-            if (found != ray.voxel.x) {
-                const float t = crossing_times(ray, ivec3(found + 1 - ray.positive.x)).x;
-                ray.voxel = ivec3(found, voxel_at(ray, t, bvec3(false), way.last).yz);
-                ray.t = max(ray.t, t);
-            }
-#endif
         } else {
             bool goes_on;
             const bool stays = take_voxel(ray, way, found, goes_on);
