@@ -8,6 +8,7 @@
 #include "app/terminal.h"
 #include "app/volume_input.h"
 #include "base/error.h"
+#include "scenes/ground.h"
 #include "scenes/load.h"
 
 namespace cairn::app {
@@ -36,8 +37,8 @@ SceneInput load_input(const SceneOptions& options, bool quiet) {
         throw Error(Fault::usage, options.scene, "this verb needs surfaces, and that is a volume",
                     "\"cairn render\", \"cairn view\" and \"cairn info\" take volumes");
     const Progress progress("loading", quiet);
-    SceneInput input{scenes::load(options.scene, {.trust_paths = options.trust_paths}), {}};
-    scenes::When when;
+    SceneInput input{scenes::load(options.scene, {.trust_paths = options.trust_paths}), {}, {}};
+    scenes::When& when = input.when;
     when.seconds = options.seconds.value_or(0.0);
     when.scene_index = options.scene_index;
     if (options.animation) {
@@ -52,6 +53,15 @@ SceneInput load_input(const SceneOptions& options, bool quiet) {
     }
     input.snapshot = scenes::take_snapshot(input.scene, when);
     return input;
+}
+
+void add_ground(SceneInput& input) {
+    constexpr double frames_per_second = 30.0;
+    const scenes::Bounds bounds =
+        input.when.animation ? scenes::bounds_over_animation(input.scene, input.when, frames_per_second)
+                             : input.snapshot.bounds;
+    scenes::add_ground(input.scene, bounds, input.when.scene_index);
+    input.snapshot = scenes::take_snapshot(input.scene, input.when);
 }
 
 }  // namespace cairn::app

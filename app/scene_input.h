@@ -10,10 +10,14 @@ namespace cairn::app {
 struct SceneInput {
     scenes::Scene scene;
     scenes::Snapshot snapshot;
+    scenes::When when;  ///< of the snapshot
 };
 
 /// Loads, and warns on stderr unless `quiet`.
 /// @throws Error  Fault::input, or Fault::usage when there is no such animation or scene.
 [[nodiscard]] SceneInput load_input(const SceneOptions& options, bool quiet);
+
+/// Adds a plane (scenes/ground.h) under all that the animation moves.
+void add_ground(SceneInput& input);
 
 }  // namespace cairn::app

@@ -9,6 +9,7 @@
 #include "app/progress.h"
 #include "reference/shadow_truth.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/pyramid_shadow.h"
 #include "renderer/soft_shadow.h"
 
 namespace cairn::app {
@@ -58,6 +59,20 @@ ShadowResult shadow_by_voxels(const ShadowTask& task, const ShadowOptions& optio
     result.first_frame_ms = renderer.statistics().milliseconds;
     result.shares = renderer.light_shares(task.view).shares;
     result.milliseconds = renderer.statistics().milliseconds;
+    return result;
+}
+
+ShadowResult shadow_by_pyramid(const ShadowTask& task, const ShadowOptions& options) {
+    renderer::PyramidShadowRenderer renderer(task.input.scene, task.shown,
+                                             {.resolution = pyramid_resolution(options)},
+                                             options.common.driver.shaders);
+    ShadowResult result;
+    result.image = renderer.render(task.view);
+    result.first_frame_ms = renderer.statistics().milliseconds;
+    result.voxelize_ms = renderer.statistics().voxelize_ms;
+    result.pyramid_ms = renderer.statistics().pyramid_ms;
+    result.shares = renderer.light_shares(task.view).shares;
+    result.milliseconds = renderer.statistics().trace_ms;
     return result;
 }
 

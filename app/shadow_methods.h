@@ -7,7 +7,7 @@
 #include "app/shadow_options.h"
 #include "renderer/renderer.h"
 
-/// The three ways of `cairn shadow` to a shadow, and how far one is from another.
+/// The ways of `cairn shadow` to a shadow, and how far one is from another.
 namespace cairn::app {
 
 /// A shadow, pixel by pixel, row 0 at the top.
@@ -16,12 +16,15 @@ struct ShadowResult {
     std::vector<float> shares;    ///< of the light that arrives, [0, 1]; -1: nothing to receive it
     double milliseconds = 0.0;    ///< of the shadow, when all that can be kept is there
     double first_frame_ms = 0.0;  ///< of a picture and all that it needs
+    double voxelize_ms = 0.0;     ///< of the pyramid, which is built for each moment
+    double pyramid_ms = 0.0;
     double standard_error = 0.0;  ///< the greatest of any pixel, where light was sampled at random
     bool cached = false;          ///< taken from --truth-cache
 };
 
-/// The two on the GPU need a context.
+/// Those on the GPU need a context.
 [[nodiscard]] ShadowResult shadow_by_voxels(const ShadowTask& task, const ShadowOptions& options);
+[[nodiscard]] ShadowResult shadow_by_pyramid(const ShadowTask& task, const ShadowOptions& options);
 [[nodiscard]] ShadowResult shadow_by_map(const ShadowTask& task, const ShadowOptions& options);
 
 /// By Embree's rays: also tells which pixels can be shadowed at all, because they show a receiver whose

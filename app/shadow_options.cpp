@@ -109,7 +109,8 @@ void add_map_options(CLI::App& verb, ShadowOptions& options) {
 }
 
 void check(const ShadowOptions& options) {
-    if (!options.method) refuse("--method", "it is missing", "choose voxel, soft-shadow-map or embree");
+    if (!options.method)
+        refuse("--method", "it is missing", "choose voxel, pyramid, soft-shadow-map or embree");
     const bool is_map = *options.method == ShadowMethod::soft_shadow_map;
     if (options.direction && options.view.light)
         refuse("--light-direction", "there is a --light already", "give one of them");
@@ -151,11 +152,12 @@ renderer::Light light_of(const ShadowOptions& options, const renderer::Light& gi
 }  // namespace
 
 void add_shadow_options(CLI::App& verb, ShadowOptions& options) {
-    add_parsed_option(verb, "--method", "voxel|soft-shadow-map|embree", "what computes the shadow",
+    add_parsed_option(verb, "--method", "voxel|pyramid|soft-shadow-map|embree", "what computes the shadow",
                       [&](const std::string& text) {
                           options.method =
                               named("--method", text,
                                     Names<ShadowMethod>{{"voxel", ShadowMethod::voxel},
+                                                        {"pyramid", ShadowMethod::pyramid},
                                                         {"soft-shadow-map", ShadowMethod::soft_shadow_map},
                                                         {"embree", ShadowMethod::embree}});
                       });
@@ -178,7 +180,11 @@ void add_shadow_options(CLI::App& verb, ShadowOptions& options) {
                     "nodes that it falls on (default: all others); the only\nones whose pixels are compared")
         ->type_name("NODE");
     add_map_options(verb, options);
+    verb.add_flag(
+        "--ground", options.ground,
+        "adds a square under the scene, as wide as it takes to see\nshadows; it stays while the scene moves");
     add_tree_options(verb, options.view);
+    options.max_resolution = verb.get_option("--max-resolution");
     add_parsed_option(verb, "--truth-samples", "N",
                       "samples of the light that each of Embree's pixels takes\nat least (default: 256)",
                       [&](const std::string& text) {
@@ -193,9 +199,15 @@ void add_shadow_options(CLI::App& verb, ShadowOptions& options) {
     add_common_options(verb, options.common);
 }
 
+int pyramid_resolution(const ShadowOptions& options) {
+    constexpr int usual = 512;
+    return options.max_resolution->count() > 0 ? options.view.tree.max_resolution : usual;
+}
+
 ShadowTask make_shadow_task(const ShadowOptions& options) {
     check(options);
     ShadowTask task{load_input(options.common.scene, options.common.report.quiet), {}, {}, {}, {}};
+    if (options.ground) add_ground(task.input);
     const std::size_t nodes = task.input.scene.nodes.size();
     if (options.occluders.empty() && options.receivers.empty()) {
         task.occluders = task.receivers = scenes::NodeSelection(nodes, true);

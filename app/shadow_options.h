@@ -16,7 +16,7 @@
 
 namespace cairn::app {
 
-enum class ShadowMethod : std::uint8_t { voxel, soft_shadow_map, embree };
+enum class ShadowMethod : std::uint8_t { voxel, pyramid, soft_shadow_map, embree };
 
 struct ShadowOptions {
     CommonOptions common;
@@ -32,7 +32,9 @@ struct ShadowOptions {
     std::optional<glm::dvec3> target;          ///< what a rectangle or a disk shines on
     std::vector<std::string> occluders, receivers;
     renderer::SoftShadowOptions map;
-    bool map_given = false;  ///< any of its options
+    bool map_given = false;                       ///< any of its options
+    bool ground = false;                          ///< a plane is added under the scene
+    const CLI::Option* max_resolution = nullptr;  ///< to ask whether it was given
     int truth_samples = 256;
     std::optional<std::filesystem::path> truth_cache;
 };
@@ -46,6 +48,9 @@ struct ShadowTask {
     renderer::View view;
     bool is_soft = false;  ///< the light has an extent, and more than its middle is asked for
 };
+/// Voxels a side of the pyramid: --max-resolution, where it was given.
+[[nodiscard]] int pyramid_resolution(const ShadowOptions& options);
+
 /// @throws Error (Fault::usage) when the options contradict each other; before anything is written.
 [[nodiscard]] ShadowTask make_shadow_task(const ShadowOptions& options);
 

@@ -20,6 +20,8 @@ const char* name_of(ShadowMethod method) {
     switch (method) {
         case ShadowMethod::voxel:
             return "voxel";
+        case ShadowMethod::pyramid:
+            return "pyramid";
         case ShadowMethod::soft_shadow_map:
             return "soft-shadow-map";
         case ShadowMethod::embree:
@@ -32,6 +34,8 @@ ShadowResult shadow_by(ShadowMethod method, const ShadowTask& task, const Shadow
     switch (method) {
         case ShadowMethod::voxel:
             return shadow_by_voxels(task, options);
+        case ShadowMethod::pyramid:
+            return shadow_by_pyramid(task, options);
         case ShadowMethod::soft_shadow_map:
             return shadow_by_map(task, options);
         case ShadowMethod::embree:
@@ -83,6 +87,12 @@ ExitCode run(const ShadowOptions& options) {
     if (method == ShadowMethod::voxel) {
         report.add("rays", task.is_soft ? task.view.shadow_rays : 1);
         report.add("max_resolution", options.view.tree.max_resolution);
+    }
+    if (method == ShadowMethod::pyramid) {
+        report.add("rays", task.is_soft ? task.view.shadow_rays : 1);
+        report.add("max_resolution", pyramid_resolution(options));
+        report.add("voxelize_ms", shadow.voxelize_ms);
+        report.add("pyramid_ms", shadow.pyramid_ms);
     }
     report.add("milliseconds", shadow.milliseconds);
     report.add("first_frame_ms", shadow.first_frame_ms);

@@ -64,6 +64,9 @@ struct ChartKind {
 /// What first frames produce, and what of it is used: production.csv.
 [[nodiscard]] Chart chart_production(const ChartOptions& options);
 
+/// Animated scenes with soft shadows through pyramids built for each frame: moving_shadow.csv.
+[[nodiscard]] Chart chart_moving_shadow(const ChartOptions& options);
+
 /// Writes `folder`/`name`, and adds it to the chart's files.
 void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
                 const std::string& text);

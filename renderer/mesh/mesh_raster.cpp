@@ -56,10 +56,11 @@ interop::MeshView mesh_view(const Strip& strip, const voxelizer::Grid& lattice) 
     return out;
 }
 
-gl::Buffer index_buffer(const voxelizer::SurfaceChunk& chunk) {
+gl::Buffer index_buffer(const voxelizer::GpuSurfaceChunk& chunk) {
+    const auto triangles = chunk.triangles.read_all<interop::SurfaceTriangle>(chunk.triangle_count);
     std::vector<std::uint32_t> indices;
-    indices.reserve(3 * chunk.triangles.size());
-    for (const interop::SurfaceTriangle& triangle : chunk.triangles) {
+    indices.reserve(3 * triangles.size());
+    for (const interop::SurfaceTriangle& triangle : triangles) {
         for (int corner = 0; corner < 3; ++corner)
             indices.push_back(triangle.vertices_material[corner]);
     }
@@ -69,21 +70,12 @@ gl::Buffer index_buffer(const voxelizer::SurfaceChunk& chunk) {
 }  // namespace
 
 struct MeshRaster::Parts {
-    Parts(const voxelizer::Surface& flat, const gl::ShaderSource& source)
+    Parts(const voxelizer::Grid& grid, const gl::ShaderSource& source)
         : shaders(source),
-          lattice(flat.grid),
-          triangle_count(flat.triangle_count),
-          surface(voxelizer::upload(flat)),
+          lattice(grid),
           view_buffer(sizeof(interop::MarchView), "view of a mesh"),
           mesh_view_buffer(sizeof(interop::MeshView), "place of a mesh"),
           place_triangles(gl::build_compute(shaders, "mesh/place_triangles.comp.glsl")) {
-        std::size_t largest = 1;
-        for (const voxelizer::SurfaceChunk& chunk : flat.chunks) {
-            indices.push_back(index_buffer(chunk));
-            largest = std::max(largest, chunk.triangles.size());
-        }
-        largest = std::min<std::size_t>(largest, MESH_BATCH_TRIANGLES);
-        placed = gl::Buffer(largest * sizeof(interop::MeshTriangle), "triangles of a mesh");
         GLuint name = 0;
         glCreateVertexArrays(1, &name);
         vertex_array = gl::VertexArrayHandle(name);
@@ -92,11 +84,34 @@ struct MeshRaster::Parts {
         glVertexArrayAttribBinding(name, ATTRIBUTE_POSITION, 0);
     }
 
+    void show(const voxelizer::GpuSurface& shown) {
+        surface = &shown;
+        indices.clear();
+        triangle_count = shown.far_triangles.size();
+        std::size_t largest = 1;
+        for (const voxelizer::GpuSurfaceChunk& chunk : shown.chunks) {
+            indices.push_back(index_buffer(chunk));
+            triangle_count += chunk.triangle_count;
+            largest = std::max<std::size_t>(largest, chunk.triangle_count);
+        }
+        largest = std::min<std::size_t>(largest, MESH_BATCH_TRIANGLES);
+        if (placed.size_bytes() < largest * sizeof(interop::MeshTriangle))
+            placed = gl::Buffer(largest * sizeof(interop::MeshTriangle), "triangles of a mesh");
+        forget_drawn();
+    }
+
+    void forget_drawn() {
+        placed_strip.reset();
+        placed_of.reset();
+        surface_strip.reset();
+        span_strip.reset();
+    }
+
     /// The program of a fragment shader, built when it is first used.
     const gl::Program& program(gl::Program& cached, const char* fragment) const {
         if (cached.id() == 0) {
             cached = gl::build_raster(shaders, "mesh/project.vert.glsl", fragment, {},
-                                      {{"MASKED", surface.has_mask ? "1" : "0"}});
+                                      {{"MASKED", surface->has_mask ? "1" : "0"}});
         }
         return cached;
     }
@@ -110,8 +125,9 @@ struct MeshRaster::Parts {
 
     gl::ShaderSource shaders;
     voxelizer::Grid lattice;
-    std::uint64_t triangle_count;
-    voxelizer::GpuSurface surface;
+    std::uint64_t triangle_count = 0;
+    voxelizer::GpuSurface own;                                  ///< where it is not the caller's
+    const voxelizer::GpuSurface* surface = nullptr;             ///< that is shown
     std::vector<gl::Buffer> indices;                            ///< of each chunk
     gl::Buffer placed;                                          ///< MeshTriangle
     std::optional<Strip> placed_strip;                          ///< whose rays `placed` is for
@@ -162,9 +178,9 @@ void MeshRaster::Parts::place(std::size_t chunk, unsigned first, unsigned count)
 void MeshRaster::Parts::draw_all(const gl::Program& drawing) {
     glBindVertexArray(vertex_array.id());
     placed.bind_storage(SSBO_MESH_TRIANGLES);
-    for (std::size_t chunk = 0; chunk < surface.chunks.size(); ++chunk) {
-        const voxelizer::GpuSurfaceChunk& mesh = surface.chunks[chunk];
-        surface.bind(chunk);
+    for (std::size_t chunk = 0; chunk < surface->chunks.size(); ++chunk) {
+        const voxelizer::GpuSurfaceChunk& mesh = surface->chunks[chunk];
+        surface->bind(chunk);
         glVertexArrayVertexBuffer(vertex_array.id(), 0, mesh.positions.id(), 0, 3 * sizeof(std::int32_t));
         glVertexArrayElementBuffer(vertex_array.id(), indices[chunk].id());
         for (unsigned first = 0; first < mesh.triangle_count; first += MESH_BATCH_TRIANGLES) {
@@ -228,21 +244,38 @@ void MeshRaster::Parts::draw_span(const Strip& strip) {
 
 namespace {
 
-voxelizer::Surface flatten(const scenes::Scene& scene, const scenes::Snapshot& snapshot) {
-    // Of the grid, only the lattice counts; in voxels so small, its margin is small too.
+/// Of the grid, only the lattice counts; in voxels so small, its margin is small too.
+voxelizer::Grid lattice_around(const scenes::Bounds& bounds) {
     constexpr int resolution = 1024;
-    const voxelizer::Grid grid = voxelizer::grid_around(snapshot.bounds, resolution);
-    return voxelizer::build_surface(scene, snapshot, grid, {.attributes = true});
+    return voxelizer::grid_around(bounds, resolution);
 }
 
 }  // namespace
 
 MeshRaster::MeshRaster(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                        const gl::ShaderSource& shaders)
-    : parts_(std::make_unique<Parts>(flatten(scene, snapshot), shaders)) {}
+    : parts_(std::make_unique<Parts>(lattice_around(snapshot.bounds), shaders)) {
+    parts_->own =
+        voxelizer::upload(voxelizer::build_surface(scene, snapshot, parts_->lattice, {.attributes = true}));
+    parts_->show(parts_->own);
+}
+MeshRaster::MeshRaster(const voxelizer::GpuSurface& surface, const voxelizer::Grid& lattice,
+                       const gl::ShaderSource& shaders)
+    : parts_(std::make_unique<Parts>(lattice, shaders)) {
+    parts_->show(surface);
+}
 MeshRaster::MeshRaster(MeshRaster&&) noexcept = default;
 MeshRaster& MeshRaster::operator=(MeshRaster&&) noexcept = default;
 MeshRaster::~MeshRaster() = default;
+
+void MeshRaster::surface_moved() {
+    glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    parts_->forget_drawn();
+}
+
+void MeshRaster::show(const voxelizer::GpuSurface& surface) {
+    parts_->show(surface);
+}
 
 MeshSurface MeshRaster::draw_surface(const interop::MarchView& view, const MarchSpace& space, int row) {
     const Strip strip = strip_of(view, space, row);
@@ -270,7 +303,7 @@ std::uint64_t MeshRaster::triangle_count() const {
 }
 
 std::size_t MeshRaster::size_bytes() const {
-    std::size_t sum = parts_->surface.size_bytes() + parts_->placed.size_bytes();
+    std::size_t sum = parts_->own.size_bytes() + parts_->placed.size_bytes();
     for (const gl::Buffer& buffer : parts_->indices)
         sum += buffer.size_bytes();
     return sum;

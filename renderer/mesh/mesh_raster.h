@@ -12,6 +12,8 @@
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 #include "shaders/interop/types.h"
+#include "voxelizer/grid.h"
+#include "voxelizer/surface.h"
 
 namespace cairn::renderer {
 
@@ -56,6 +58,9 @@ public:
     /// @throws Error  Fault::memory when it does not fit.
     MeshRaster(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                const gl::ShaderSource& shaders = {});
+    /// A surface of the caller's, with attributes, which must outlive the raster or what it shows instead.
+    MeshRaster(const voxelizer::GpuSurface& surface, const voxelizer::Grid& lattice,
+               const gl::ShaderSource& shaders = {});
     MeshRaster(MeshRaster&&) noexcept;
     MeshRaster& operator=(MeshRaster&&) noexcept;
     MeshRaster(const MeshRaster&) = delete;
@@ -69,8 +74,14 @@ public:
     [[nodiscard]] MeshSurface draw_surface(const interop::MarchView& view, const MarchSpace& space, int row);
     [[nodiscard]] MeshSpan draw_span(const interop::MarchView& view, const MarchSpace& space, int row);
 
+    /// The vertices of the surface have moved in its lattice (voxelizer/moving_surface.h).
+    void surface_moved();
+    /// Shows another surface in the same lattice, of the same materials, from now on.
+    void show(const voxelizer::GpuSurface& surface);
+
     [[nodiscard]] std::uint64_t triangle_count() const;
-    [[nodiscard]] std::size_t size_bytes() const;  ///< in the driver's memory, without what is drawn to
+    /// In the driver's memory, without what is drawn to and what is the caller's.
+    [[nodiscard]] std::size_t size_bytes() const;
 
 private:
     struct Parts;

@@ -66,6 +66,12 @@
 #define TEXTURE_PROXY_SPAN 10    // RG32F a pixel: distance of the proxy's first face, minus that of its last
 #define TEXTURE_PROXY_FACES 11   // R32F a pixel: fronts less backs
 
+// Shadow rays through the xy-reduced pyramid (beside the marcher's UBO_VIEW, SSBO_IMAGE, SSBO_SHADOW_SUMS and
+// TEXTURE_MESH_*).
+#define SSBO_COLUMN_COUNTS 2  // pixels whose rays go on in the next pass
+#define SSBO_COLUMNS 0        // texels of a coarser level, when it is built
+#define TEXTURE_COLUMNS 0     // all levels, COLUMN_TEXEL_BITS a texel
+
 // Meshes that are rasterized (beside the surface's 0 to 4, and UBO_VIEW).
 #define UBO_MESH_VIEW 1
 #define SSBO_MESH_TRIANGLES 5  // MeshTriangle: a batch of triangles, as this view sees them

@@ -168,6 +168,16 @@
 // A voxel's chord is cut in at most so many steps.
 #define VOLUME_MOST_STEPS 32
 
+// The xy-reduced pyramid (renderer/shadow/column_pyramid.h): bits of a column that one fetch reads, and what is tested of a
+// column, in the order of renderer/shadow/column_mask.h.
+#define COLUMN_TEXEL_BITS 128
+#define COLUMN_MASK_MIP_LEVEL 0
+#define COLUMN_MASK_ADAPTIVE 1
+// Voxels a side, log2. A ray turns its loops fewer than 12 times for each, which past TURN_BUDGET must stay under the turns
+// that llvmpipe grants (VOXEL_REGION_SIDE).
+#define COLUMN_LEAST_LEVELS 3
+#define COLUMN_MOST_LEVELS 11
+
 // A ray stops when less light than this is left: half a step of an 8-bit image.
 #define OPAQUE_TRANSMITTANCE (1.0 / 512.0)
 

@@ -34,16 +34,10 @@ uniform uint list_out;
 
 float visibility;
 
-// The receiver: a voxel near its tangent plane, and near it, is its own surface and casts no shadow on it.
-vec3 receiver;
-vec3 receiver_normal;
 float own_side;  // of the voxels that the receiver is shown with; of the finer ones, when they are blended
-float own_height;
-float own_reach;
-float receiver_rise;  // of the ray over that plane, for each unit of its length
+#include "march/own_surface.glsl"
 
 #define OWN_HEIGHT 1.75  // in voxels
-float own_reach_of(float side) { return side * clamp(2.5 / receiver_rise, 8.0, 64.0); }
 
 // Is this voxel the receiver's own?
 bool is_own(Ray ray, vec3 centre, float t, float side) {
@@ -68,7 +62,7 @@ bool is_own(Ray ray, vec3 centre, float t, float side) {
         reach = max(reach, own_reach_of(side));
     }
 #endif
-    return t < reach && dot(from_receiver, receiver_normal) < height;
+    return is_own(from_receiver, t, height, reach);
 }
 
 bool visit(inout Ray ray, Sample s) {
@@ -118,10 +112,7 @@ float voxel_side(float width) {
 
 // A ray from the receiver to the light, or on from where it stood. False when it must wait: then it is stored.
 bool trace(vec3 to_light, float reach, float width, float side, bool starts, inout RayState state, inout int turns) {
-    // The receiver's plane may lie half a voxel's diagonal from the point, and its voxels as far from the plane. A ray
-    // at a low angle stays among them for longer.
-    receiver_rise = max(dot(receiver_normal, to_light), 1e-3);
-    own_reach = own_height > 0.0 ? own_reach_of(side) : 0.0;
+    look_to_light(to_light, side);
     Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
 #if WINDOWS
     ray.window = seen_window;
@@ -129,8 +120,7 @@ bool trace(vec3 to_light, float reach, float width, float side, bool starts, ino
     bool inside = true;
     if (starts) {
         visibility = 1.0;
-        // Until here all voxels are its own: those that are not lie at least half a diagonal under their centres.
-        ray.t = min(max(own_height - 0.87 * side, 0.0) / receiver_rise, own_reach);
+        ray.t = own_end(side);
         inside = enter_windows(ray);
     } else {
         load_position(ray, state);

@@ -1,0 +1,143 @@
+#include "renderer/pyramid_shadow.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "base/error.h"
+#include "renderer/clock.h"
+#include "renderer/marched_view.h"
+#include "renderer/mesh/mesh_raster.h"
+#include "renderer/shadow/column_pyramid.h"
+#include "renderer/shadow/column_shadows.h"
+#include "shaders/interop/config.h"
+#include "voxelizer/conservative_voxelizer.h"
+#include "voxelizer/moving_surface.h"
+
+namespace cairn::renderer {
+
+struct PyramidShadowRenderer::Parts {
+    Parts(const voxelizer::Grid& shown_grid, const PyramidShadowOptions& options,
+          const gl::ShaderSource& shaders)
+        : grid(shown_grid),
+          shape(make_tree_shape(2, 8, options.resolution)),
+          pyramid(options.resolution, shaders),
+          shadows(pyramid, options.mask, shaders),
+          voxelizer(shaders) {
+        statistics.pyramid_bytes = pyramid.size_bytes();
+    }
+
+    [[nodiscard]] const voxelizer::GpuSurface& surface() const { return moving ? moving->surface() : *still; }
+    void build_pyramid();
+    [[nodiscard]] std::vector<std::uint32_t> light(const View& view, int shown);
+
+    voxelizer::Grid grid;
+    TreeShape shape;  ///< of the same voxels, for what a view is checked by
+    ColumnPyramid pyramid;
+    ColumnShadows shadows;
+    voxelizer::ConservativeVoxelizer voxelizer;
+    std::optional<voxelizer::GpuSurface> still;
+    std::optional<voxelizer::MovingSurface> moving;
+    std::optional<MeshRaster> raster;
+    bool is_built = false;  ///< the pyramid is that of the surface as it stands
+    double move_ms = 0.0;   ///< since the last frame
+    PyramidShadowStatistics statistics;
+};
+
+void PyramidShadowRenderer::Parts::build_pyramid() {
+    if (is_built) return;
+    const voxelizer::Region region{grid.level(), glm::ivec3(0), pyramid.grid_size()};
+    pyramid.build(voxelizer.voxelize_on_gpu(surface(), region));
+    statistics.voxelize_ms = voxelizer.last_milliseconds();
+    statistics.pyramid_ms = pyramid.last_milliseconds();
+    is_built = true;
+}
+
+/// @param shown  SHOW_SURFACE or SHOW_LIGHT
+std::vector<std::uint32_t> PyramidShadowRenderer::Parts::light(const View& view, int shown) {
+    check(view, shape);
+    const auto start = Clock::now();
+    statistics = {.move_ms = move_ms, .pyramid_bytes = pyramid.size_bytes()};
+    build_pyramid();
+    interop::MarchView marched = march_view(view, grid, shape, nullptr);
+    std::vector<std::uint32_t> pixels;
+    for (int row = 0; row < view.height; row += marched.band.y) {
+        const auto drawing = Clock::now();
+        const MeshSurface mesh = raster->draw_surface(marched, {grid.origin, grid.voxel_size}, row);
+        glFinish();
+        statistics.raster_ms += milliseconds_since(drawing);
+        const int end = std::min(mesh.first_row + mesh.rows, view.height);
+        marched.band = glm::ivec4(row, end - row, shown, 0);
+        const auto band =
+            shadows.light(marched, pyramid, {mesh.first_row, mesh.nearest, mesh.surface, MESH_OWN_HEIGHT});
+        pixels.insert(pixels.end(), band.begin(), band.end());
+        statistics.trace_ms += shadows.last_milliseconds();
+        statistics.passes += shadows.last_passes();
+    }
+    statistics.milliseconds = move_ms + milliseconds_since(start);
+    move_ms = 0.0;
+    return pixels;
+}
+
+PyramidShadowRenderer::PyramidShadowRenderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
+                                             const PyramidShadowOptions& options,
+                                             const gl::ShaderSource& shaders)
+    : parts_(std::make_unique<Parts>(voxelizer::grid_around(snapshot.bounds, options.resolution), options,
+                                     shaders)) {
+    parts_->still =
+        voxelizer::upload(voxelizer::build_surface(scene, snapshot, parts_->grid, {.attributes = true}));
+    parts_->raster.emplace(*parts_->still, parts_->grid, shaders);
+}
+
+PyramidShadowRenderer::PyramidShadowRenderer(const scenes::Scene& scene, const scenes::When& when,
+                                             const scenes::Bounds& bounds,
+                                             const PyramidShadowOptions& options,
+                                             const gl::ShaderSource& shaders)
+    : parts_(std::make_unique<Parts>(voxelizer::grid_around(bounds, options.resolution), options, shaders)) {
+    parts_->moving.emplace(scene, when, parts_->grid, voxelizer::SurfaceOptions{.attributes = true}, shaders);
+    parts_->raster.emplace(parts_->surface(), parts_->grid, shaders);
+}
+
+PyramidShadowRenderer::PyramidShadowRenderer(PyramidShadowRenderer&&) noexcept = default;
+PyramidShadowRenderer& PyramidShadowRenderer::operator=(PyramidShadowRenderer&&) noexcept = default;
+PyramidShadowRenderer::~PyramidShadowRenderer() = default;
+
+void PyramidShadowRenderer::move_to(double seconds) {
+    Parts& parts = *parts_;
+    if (!parts.moving)
+        throw Error(Fault::usage, "moving scene", "the renderer was made for one moment",
+                    "make it for a scene and the bounds of its animation");
+    const auto start = Clock::now();
+    const bool was_on_cpu = parts.moving->was_on_cpu();
+    parts.is_built = false;
+    parts.moving->move_to(seconds);
+    if (was_on_cpu || parts.moving->was_on_cpu()) {
+        parts.raster->show(parts.surface());
+    } else {
+        parts.raster->surface_moved();
+    }
+    glFinish();
+    parts.move_ms += milliseconds_since(start);
+}
+
+Image PyramidShadowRenderer::render(const View& view) {
+    const std::vector<std::uint32_t> pixels = parts_->light(view, SHOW_SURFACE);
+    Image image{view.width, view.height, std::vector<std::uint8_t>(4 * pixels.size())};
+    std::memcpy(image.rgba.data(), pixels.data(), image.rgba.size());
+    return image;
+}
+
+LightShares PyramidShadowRenderer::light_shares(const View& view) {
+    const std::vector<std::uint32_t> pixels = parts_->light(view, SHOW_LIGHT);
+    LightShares out{view.width, view.height, std::vector<float>(pixels.size())};
+    std::memcpy(out.shares.data(), pixels.data(), pixels.size() * sizeof(float));
+    return out;
+}
+
+const PyramidShadowStatistics& PyramidShadowRenderer::statistics() const {
+    return parts_->statistics;
+}
+
+}  // namespace cairn::renderer

@@ -1,0 +1,76 @@
+#include "renderer/shadow/column_shadows.h"
+
+#include <chrono>
+#include <string>
+
+#include "base/error.h"
+#include "shaders/interop/bindings.h"
+#include "shaders/interop/config.h"
+
+namespace cairn::renderer {
+namespace {
+
+constexpr unsigned group_size = 64;
+
+static_assert(int(ColumnMask::mip_level) == COLUMN_MASK_MIP_LEVEL &&
+              int(ColumnMask::adaptive) == COLUMN_MASK_ADAPTIVE);
+
+}  // namespace
+
+ColumnShadows::ColumnShadows(const ColumnPyramid& pyramid, ColumnMask mask, const gl::ShaderSource& shaders)
+    : shaders_(shaders),
+      defines_(pyramid.defines()),
+      view_(sizeof(interop::MarchView), "view of shadow rays"),
+      counts_(sizeof(glm::uvec4), "counts of shadow rays") {
+    defines_.emplace_back("COLUMN_MASK", std::to_string(int(mask)));
+}
+
+const gl::Program& ColumnShadows::program(bool is_soft) {
+    gl::Program& cached = is_soft ? soft_ : hard_;
+    if (cached.id() == 0) {
+        gl::Defines defines = defines_;
+        if (is_soft) defines.emplace_back("SOFT_SHADOWS", "");
+        cached = gl::build_compute(shaders_, "shadow/light_columns.comp.glsl", defines);
+    }
+    return cached;
+}
+
+std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, const ColumnPyramid& pyramid,
+                                                const ColumnReceivers& receivers) {
+    const std::size_t pixels = std::size_t(view.size_shadow.x) * std::size_t(view.band.y);
+    if (image_.size_bytes() < pixels * sizeof(std::uint32_t)) {
+        image_ = gl::Buffer(pixels * sizeof(std::uint32_t), "picture");
+        sums_ = gl::Buffer(pixels * sizeof(glm::uvec2), "sums of shadow rays");
+    }
+    view_.write(0, &view, sizeof(view));
+    const gl::Program& lighting = program(view.area_light.x > 1);
+    lighting.set("mesh_first_row", receivers.first_row);
+    lighting.set("mesh_shadows", 1);
+    lighting.set("mesh_own_height", receivers.own_height);
+    glFinish();
+    const auto start = std::chrono::steady_clock::now();
+    view_.bind_uniform(UBO_VIEW);
+    image_.bind_storage(SSBO_IMAGE);
+    sums_.bind_storage(SSBO_SHADOW_SUMS);
+    counts_.bind_storage(SSBO_COLUMN_COUNTS);
+    pyramid.bind_for_reading();
+    glBindTextureUnit(TEXTURE_MESH_NEAREST, receivers.nearest);
+    glBindTextureUnit(TEXTURE_MESH_SURFACE, receivers.surface);
+    glm::uvec4 counts(1);
+    for (last_passes_ = 0; counts.x != 0; ++last_passes_) {
+        // Each pass ends a ray at least of every pixel.
+        if (last_passes_ > MAX_SHADOW_RAYS)
+            throw Error(Fault::internal, "shadow rays", "a ray did not come to an end");
+        counts_.fill(0);
+        lighting.set("first_pass", int(last_passes_ == 0));
+        lighting.use();
+        gl::dispatch_threads(pixels, group_size);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+        counts_.read(0, &counts, sizeof(counts));
+    }
+    last_milliseconds_ =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return image_.read_all<std::uint32_t>(pixels);
+}
+
+}  // namespace cairn::renderer

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gl/buffer.h"
+#include "gl/program.h"
+#include "gl/shader_source.h"
+#include "renderer/shadow/column_mask.h"
+#include "renderer/shadow/column_pyramid.h"
+#include "shaders/interop/types.h"
+
+namespace cairn::renderer {
+
+/// What is seen at the pixels of some rows (MeshSurface of renderer/mesh/mesh_raster.h).
+struct ColumnReceivers {
+    int first_row = 0;  ///< of the picture, in the textures
+    GLuint nearest = 0;
+    GLuint surface = 0;
+    float own_height = 0.0F;  ///< voxels whose centres are not so far over a receiver's plane, in their
+                              ///< sides, are its own surface
+};
+
+/// Shadow rays from rasterized receivers through a pyramid of columns. Needs the context that was current at
+/// its construction.
+class ColumnShadows {
+public:
+    /// @param pyramid  its resolution counts.
+    ColumnShadows(const ColumnPyramid& pyramid, ColumnMask mask, const gl::ShaderSource& shaders = {});
+
+    /// Lights the band of a view that is told in the pyramid's voxels.
+    /// @return  a word a pixel: sRGB-encoded RGBA, or with SHOW_LIGHT the bits of a float.
+    [[nodiscard]] std::vector<std::uint32_t> light(const interop::MarchView& view,
+                                                   const ColumnPyramid& pyramid,
+                                                   const ColumnReceivers& receivers);
+
+    /// Of the last light(), by the wall clock, without reading the pixels back.
+    [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
+    [[nodiscard]] int last_passes() const { return last_passes_; }
+
+private:
+    const gl::Program& program(bool is_soft);
+
+    gl::ShaderSource shaders_;
+    gl::Defines defines_;
+    gl::Program hard_, soft_;  ///< built when first used
+    gl::Buffer view_, image_, sums_, counts_;
+    double last_milliseconds_ = 0.0;
+    int last_passes_ = 0;
+};
+
+}  // namespace cairn::renderer
