@@ -67,6 +67,9 @@ struct ChartKind {
 /// Animated scenes with soft shadows through pyramids built for each frame: moving_shadow.csv.
 [[nodiscard]] Chart chart_moving_shadow(const ChartOptions& options);
 
+/// Atty et al. 2005, sections 4.2 and 5.2: soft_shadow_map.csv and soft_shadow_map.png.
+[[nodiscard]] Chart chart_soft_shadow_map(const ChartOptions& options);
+
 /// Writes `folder`/`name`, and adds it to the chart's files.
 void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
                 const std::string& text);

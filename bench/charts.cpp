@@ -16,6 +16,7 @@ std::span<const ChartKind> charts() {
         ChartKind{"exploration", "frames at three distances, and on the way there", chart_exploration},
         ChartKind{"moving-shadow", "animated scenes with soft shadows, by frame", chart_moving_shadow},
         ChartKind{"production", "bricks that a first frame produces, and uses", chart_production},
+        ChartKind{"soft-shadow-map", "error and time of soft shadow maps", chart_soft_shadow_map},
     };
     return all;
 }

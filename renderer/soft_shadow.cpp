@@ -26,7 +26,8 @@ glm::dmat4 clip_from_world(const SoftShadowView& view, const scenes::Bounds& bou
         furthest = std::max(furthest, depth);
     }
     if (bounds.empty() || !(furthest > 0.0)) furthest = 1.0;
-    furthest *= 1.001;
+    // So far behind all that is there that it is not clipped by rounding, were the near plane the least.
+    furthest *= 2.0;
     nearest = std::clamp(0.999 * nearest, 1e-5 * furthest, 0.999 * furthest);
     return glm::perspective(view.camera.yfov, double(view.width) / view.height, nearest, furthest) * camera;
 }

@@ -63,7 +63,12 @@ struct ShadowMapValues {
 /// Limits of the method: neither occluders nor receivers shadow their own kind; of what stands behind another
 /// occluder (receiver) as seen from the light's centre, nothing is known; occluders nearer to the light's
 /// plane than the frustum's near distance, or outside its window, hide nothing; a sheet that the light's
-/// centre sees edge-on hides nothing. What has no receiver counts as lit.
+/// centre sees edge-on hides nothing, nor does what lies in the receiver's own place. What has no receiver
+/// (behind the light, beyond the window) counts as lit. The edge of a shadow is known to half a texel of the
+/// occluder map, which a light smaller than that does not blur. Where neighbouring texels differ much in
+/// depth, as along walls or close to the light, their patches hide too much or too little (equation 3): 2 to
+/// 6 percent of the light on average over a shadow, by how large the light is, and 10 at the light. FP16
+/// loses ever more from 128 texels on. More lights than one are as many maps: what is seen adds up.
 class SoftShadowMap {
 public:
     /// @throws Error  Fault::usage for a size out of range; Fault::context when the driver cannot blend the
