@@ -19,6 +19,12 @@
 #define RAYS_WIDEN 0
 #include "march/march.glsl"
 #include "march/shade.glsl"
+#if defined(WITH_MESHES) || defined(SOFT_SHADOWS)
+#define TELLS_SURFACE 1
+#include "march/surface_plane.glsl"
+#else
+#define TELLS_SURFACE 0
+#endif
 #ifdef SOFT_SHADOWS
 #include "march/area_light.glsl"
 layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { uvec2 shadow_sums[]; };
@@ -66,6 +72,9 @@ bool is_own(Ray ray, vec3 centre, float t, float side) {
 }
 
 bool visit(inout Ray ray, Sample s) {
+#if TELLS_SURFACE
+    if (!meets_surface(ray, s)) return true;
+#endif
     if (!is_own(ray, s.centre, s.t, s.side)) visibility = behind(visibility, coverage_of(s), s.share);
     return visibility > OPAQUE_TRANSMITTANCE;
 }
