@@ -54,8 +54,8 @@ std::vector<double> rays_find(const ShadowScene& scene, const SoftShadowMap& map
 
 /// Upright, through the light's axis.
 Corners upright(double half_thickness) {
-    const Corners one = quad({half_thickness, 0.3, -0.6}, {half_thickness, 0.3, 0.6},
-                             {half_thickness, 1.3, 0.6}, {half_thickness, 1.3, -0.6});
+    Corners one = quad({half_thickness, 0.3, -0.6}, {half_thickness, 0.3, 0.6}, {half_thickness, 1.3, 0.6},
+                       {half_thickness, 1.3, -0.6});
     if (half_thickness == 0.0) return one;
     return box({-half_thickness, 0.3, -0.6}, {half_thickness, 1.3, 0.6});
 }
@@ -170,7 +170,7 @@ TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
     int behind = 0;
     for (int y = 0; y < 96; ++y) {
         for (int x = 60; x < 96; ++x) {  // x > 2.6
-            const float visible = picture.visible[std::size_t(y * 96 + x)];
+            const float visible = picture.visible[std::size_t(y) * 96 + std::size_t(x)];
             if (visible < 0.0F) continue;
             ASSERT_EQ(visible, 1.0F) << "pixel (" << x << ", " << y << ")";
             ++behind;
