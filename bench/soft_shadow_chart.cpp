@@ -23,7 +23,6 @@ using renderer::ShadowFormat;
 using renderer::ShadowMesh;
 using renderer::ShadowPasses;
 using renderer::SoftShadowMap;
-using renderer::SoftShadowOptions;
 
 constexpr int own_base = 128;         // texels a side of the occluder map, where it is not what varies
 constexpr int most_points = 48;       // a side

@@ -51,7 +51,7 @@ TEST(BenchSoftShadowMap, WritesEveryStudyWithItsErrorAndItsTime) {
 #endif
 }
 
-TEST(BenchSoftShadowMap, RefusesWhatCastsNoShadow) {
+TEST(BenchSoftShadowMap, RefusesAnOccluderThatIsNotThere) {
     const ScratchFolder folder;
     const Answer answer =
         cairn({"bench", "soft-shadow-map", "--scene", "builtin:nothing", "-o", folder.path().string()});

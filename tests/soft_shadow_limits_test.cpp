@@ -54,8 +54,8 @@ std::vector<double> rays_find(const ShadowScene& scene, const SoftShadowMap& map
 
 /// Upright, through the light's axis.
 Corners upright(double half_thickness) {
-    const Corners one = quad({half_thickness, 0.3, -0.6}, {half_thickness, 0.3, 0.6},
-                             {half_thickness, 1.3, 0.6}, {half_thickness, 1.3, -0.6});
+    Corners one = quad({half_thickness, 0.3, -0.6}, {half_thickness, 0.3, 0.6}, {half_thickness, 1.3, 0.6},
+                       {half_thickness, 1.3, -0.6});
     if (half_thickness == 0.0) return one;
     return box({-half_thickness, 0.3, -0.6}, {half_thickness, 1.3, 0.6});
 }
@@ -170,7 +170,7 @@ TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
     int behind = 0;
     for (int y = 0; y < 96; ++y) {
         for (int x = 60; x < 96; ++x) {  // x > 2.6
-            const float visible = picture.visible[std::size_t(y * 96 + x)];
+            const float visible = picture.visible[std::size_t(y) * 96 + std::size_t(x)];
             if (visible < 0.0F) continue;
             ASSERT_EQ(visible, 1.0F) << "pixel (" << x << ", " << y << ")";
             ++behind;
@@ -179,13 +179,29 @@ TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
     EXPECT_GT(behind, 1000);
 }
 
-// One map has one light; what two give is what their maps give, added up. The eye is under the ball, close to
-// the floor: of all that is in the scene the floor is the furthest.
-TEST_F(SoftShadowLimits, MoreThanOneLight) {
-    const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 4), floor_of_4);
+/// From under the ball: of all that is in the scene, the floor is the furthest.
+renderer::SoftShadowView from_under_the_ball() {
     renderer::SoftShadowView view;
     view.width = view.height = 80;
     view.camera = {.eye = {0.0, 0.1, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0.0, 0.0, -1.0}, .yfov = 2.9};
+    return view;
+}
+
+// Depths are floats, and with the eye among the things the near plane is very near: what is furthest must not
+// be rounded past the far one.
+TEST_F(SoftShadowLimits, AnEyeAmongTheOccludersSeesTheFurthestReceiver) {
+    const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 2), floor_of_4);
+    renderer::SoftShadowRenderer pictures(scene.scene, scene.whole, {false, true}, {true, false});
+    renderer::SoftShadowView view = from_under_the_ball();
+    view.light = light_above(3.0, 0.2, 0.2);
+    for (const float visible : pictures.render(view).visible)
+        ASSERT_GE(visible, 0.0F) << "the floor is not there";
+}
+
+// One map has one light; what two give is what their maps give, added up.
+TEST_F(SoftShadowLimits, MoreThanOneLight) {
+    const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 4), floor_of_4);
+    renderer::SoftShadowView view = from_under_the_ball();
     const std::array<RectangleLight, 2> lights = {
         renderer::aimed_light({1.2, 3.0, 0.3}, {0.0, 0.5, 0.0}, 0.4, 0.4),
         renderer::aimed_light({-0.9, 2.5, -0.8}, {0.0, 0.5, 0.0}, 0.6, 0.3)};

@@ -86,7 +86,7 @@ void each(const LightShares& found, const View& view,
           const std::function<void(const dvec3&, double)>& judge) {
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x)
-            judge(floor_point(view, x, y), found.shares[std::size_t(y * view.width + x)]);
+            judge(floor_point(view, x, y), found.shares[std::size_t(y) * std::size_t(view.width) + std::size_t(x)]);
 }
 
 constexpr int resolution = 64;  // so four bricks an axis

@@ -66,9 +66,10 @@ struct ShadowMapValues {
 /// centre sees edge-on hides nothing, nor does what lies in the receiver's own place. What has no receiver
 /// (behind the light, beyond the window) counts as lit. The edge of a shadow is known to half a texel of the
 /// occluder map, which a light smaller than that does not blur. Where neighbouring texels differ much in
-/// depth, as along walls or close to the light, their patches hide too much or too little (equation 3): 2 to
-/// 6 percent of the light on average over a shadow, by how large the light is, and 10 at the light. FP16
-/// loses ever more from 128 texels on. More lights than one are as many maps: what is seen adds up.
+/// depth, as along walls or close to the light, their patches hide too much or too little (equation 3): of
+/// the light 1 to 6 percent on average over a shadow, the more the larger the light, and up to 10 in one pass
+/// or where the occluder touches the light. FP16 loses ever more from 128 texels on. More lights than one are
+/// as many maps: what is seen adds up.
 class SoftShadowMap {
 public:
     /// @throws Error  Fault::usage for a size out of range; Fault::context when the driver cannot blend the
