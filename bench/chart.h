@@ -64,6 +64,10 @@ struct ChartKind {
 /// What first frames produce, and what of it is used: production.csv.
 [[nodiscard]] Chart chart_production(const ChartOptions& options);
 
+/// What rays, occlusion queries (Crassin 2007, section 3.6) and the frustum alone have produced for the same
+/// views: visibility.csv.
+[[nodiscard]] Chart chart_visibility(const ChartOptions& options);
+
 /// Writes `folder`/`name`, and adds it to the chart's files.
 void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
                 const std::string& text);

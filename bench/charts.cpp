@@ -15,6 +15,7 @@ std::span<const ChartKind> charts() {
         ChartKind{"structure", "N and M, and a regular grid, on a hollow sphere", chart_structure},
         ChartKind{"exploration", "frames at three distances, and on the way there", chart_exploration},
         ChartKind{"production", "bricks that a first frame produces, and uses", chart_production},
+        ChartKind{"visibility", "bricks produced: rays, occlusion queries, frustum", chart_visibility},
     };
     return all;
 }

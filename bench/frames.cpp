@@ -9,9 +9,12 @@
 #include "gl/context.h"
 #include "renderer/produce/dense_field.h"
 #include "renderer/produce/made_fields.h"
+#include "renderer/produce/surface_content.h"
+#include "renderer/produce/volume_content.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "scenes/volume.h"
+#include "voxelizer/surface.h"
 
 namespace cairn::bench {
 namespace {
@@ -84,12 +87,12 @@ Cell Subject::triangles() const {
     return data_->snapshot ? Cell(std::int64_t(data_->snapshot->triangle_count)) : Cell{};
 }
 
-renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders) const {
-    if (data_->scene) return {*data_->scene, *data_->snapshot, tree, shaders};
+Subject::Shown Subject::shown_field(const renderer::TreeOptions& tree) const {
     if (data_->volume) {
         const glm::dvec3& spacing = data_->volume->spacing;
         const double voxel_size = std::min({spacing.x, spacing.y, spacing.z});
-        return {*data_->volume, opaque(scan_empty, voxel_size), tree, {}, shaders};
+        return {std::make_shared<renderer::DenseField>(*data_->volume, tree.n),
+                opaque(scan_empty, voxel_size)};
     }
     const std::int64_t resolution = renderer::tree_shape_of(tree).resolution();
     const int copies = data_->is_repeated ? int(std::max<std::int64_t>(resolution / copy_resolution, 1)) : 1;
@@ -100,7 +103,28 @@ renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::Sh
         const auto repeated = std::make_shared<renderer::RepeatedField>(std::move(field), copies);
         field = std::make_shared<Moved>(repeated, bounds_.low);
     }
-    return {std::move(field), opaque(0.0, 1.0 / double(resolution)), tree, {}, shaders};
+    return {std::move(field), opaque(0.0, 1.0 / double(resolution))};
+}
+
+renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders) const {
+    if (data_->scene) return {*data_->scene, *data_->snapshot, tree, shaders};
+    Shown shown = shown_field(tree);
+    return {std::move(shown.field), shown.transfer, tree, {}, shaders};
+}
+
+std::unique_ptr<renderer::Content> Subject::content(const renderer::TreeOptions& tree,
+                                                    const gl::ShaderSource& shaders) const {
+    if (data_->scene) {
+        const renderer::TreeShape shape = renderer::tree_shape_of(tree);
+        const voxelizer::Grid grid = voxelizer::grid_around(data_->snapshot->bounds, shape.resolution());
+        const voxelizer::Surface surface =
+            voxelizer::build_surface(*data_->scene, *data_->snapshot, grid, {.attributes = true});
+        return std::make_unique<renderer::SurfaceContent>(shape, surface, shaders);
+    }
+    Shown shown = shown_field(tree);
+    const renderer::VolumeShape shape =
+        renderer::make_volume_shape(shown.field->frame(), tree.n, tree.m, tree.max_resolution);
+    return std::make_unique<renderer::VolumeContent>(shape, std::move(shown.field), shown.transfer.visible());
 }
 
 renderer::View Subject::view(int width, int height) const {

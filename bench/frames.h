@@ -27,11 +27,20 @@ public:
     [[nodiscard]] Cell triangles() const;  ///< nothing for a volume
     [[nodiscard]] renderer::Renderer make(const renderer::TreeOptions& tree,
                                           const gl::ShaderSource& shaders) const;
+    /// What such a renderer shows, for those who look at it by other means.
+    [[nodiscard]] std::unique_ptr<renderer::Content> content(const renderer::TreeOptions& tree,
+                                                             const gl::ShaderSource& shaders) const;
     /// The whole of it.
     [[nodiscard]] renderer::View view(int width, int height) const;
 
 private:
     struct Data;
+    /// A volume or a made field, and how it is shown.
+    struct Shown {
+        std::shared_ptr<const renderer::Field> field;
+        renderer::TransferFunction transfer;
+    };
+    [[nodiscard]] Shown shown_field(const renderer::TreeOptions& tree) const;
     std::unique_ptr<Data> data_;
     std::string name_;
     scenes::Bounds bounds_;

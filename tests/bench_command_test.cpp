@@ -170,6 +170,28 @@ TEST(BenchProduction, ProducesWhatIsUsed) {
     EXPECT_GT(rows[0]["brick_ms"], 0.0);
 }
 
+TEST(BenchVisibility, RaysProduceLessThanQueriesAndQueriesLessThanTheFrustum) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("visibility", "48", "builtin:knot", folder);
+    ASSERT_EQ(rows.size(), 3U * 4U);
+    const std::vector<std::string> schemes = {"ray-guided", "occlusion-query", "occlusion-query-waiting",
+                                              "frustum"};
+    std::int64_t by_rays = 0, by_frustum = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const nlohmann::json& row = rows[i];
+        EXPECT_EQ(row["scheme"], schemes[i % 4]) << row;
+        EXPECT_EQ(row["view"], rows[i / 4 * 4]["view"]) << row;
+        EXPECT_EQ(row["missed"], 0) << row;
+        EXPECT_GT(row["bricks_used"], 0) << row;
+        EXPECT_GE(row["bricks_produced"], rows[i / 4 * 4]["bricks_produced"]) << row;
+        EXPECT_LE(row["bricks_produced"], rows[i / 4 * 4 + 3]["bricks_produced"]) << row;
+        EXPECT_EQ(row["queries"] > 0, i % 4 == 2 || (i % 4 == 1 && row["passes"] > 1)) << row;
+        EXPECT_GE(row["passes"], 1) << row;
+        (i % 4 == 0 ? by_rays : by_frustum) += i % 4 % 3 == 0 ? row["bricks_produced"].get<int>() : 0;
+    }
+    EXPECT_LT(by_rays, by_frustum);
+}
+
 TEST(BenchUsage, HasHelpThatFitsATerminal) {
     const Answer answer = cairn({"bench", "--help"});
     EXPECT_EQ(answer.code, 0) << answer;
