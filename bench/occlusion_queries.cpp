@@ -94,6 +94,12 @@ void VisibleBricks::load(Tiles tiles) {
     ++result_.batches;
 }
 
+/// (Without new bricks, the picture is as it was.)
+void VisibleBricks::load_and_draw(Tiles tiles) {
+    load(tiles);
+    if (!tiles.empty()) draw();
+}
+
 /// Marches the picture through what is there, for the depths where its rays end.
 void VisibleBricks::draw() {
     interop::MarchView view = view_;
@@ -164,13 +170,11 @@ Visibility VisibleBricks::by_queries(const QuerySchedule& schedule) {
     test(under_test);
     while (!under_test.empty() || !to_load.empty()) {
         if (schedule.overlapped) {
-            load(to_load);
-            draw();
+            load_and_draw(to_load);
             to_load = visible_of(under_test);
         } else {
             to_load = visible_of(under_test);
-            load(to_load);
-            draw();
+            load_and_draw(to_load);
             to_load.clear();
         }
         const double visible = double(to_load.size());

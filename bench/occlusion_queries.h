@@ -70,6 +70,7 @@ private:
     void begin();
     void load(Tiles tiles);
     void draw();
+    void load_and_draw(Tiles tiles);
     void test(Tiles tiles);
     [[nodiscard]] std::vector<ViewTile> visible_of(Tiles tested) const;
     void show();

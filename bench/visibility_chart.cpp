@@ -85,16 +85,15 @@ private:
     }
 
     [[nodiscard]] renderer::TreeOptions tree() const {
-        renderer::TreeOptions options;
+        renderer::TreeOptions options = subject_.fitted({});
         options.brick_pool_bytes = pool_bytes_;
         return options;
     }
 
     /// A pool for all that could be produced, if there can be one; no larger, since drivers clear them.
     [[nodiscard]] std::size_t bytes_for_frustum(const renderer::View& view) const {
-        const renderer::TreeShape shape = renderer::tree_shape_of(renderer::TreeOptions{});
-        const std::unique_ptr<renderer::Content> content =
-            subject_.content(renderer::TreeOptions{}, options_.shaders);
+        const renderer::TreeShape shape = renderer::tree_shape_of(subject_.fitted({}));
+        const std::unique_ptr<renderer::Content> content = subject_.content({}, options_.shaders);
         const renderer::BrickPool sample(shape, content->channels(), sample_pool_bytes);
         const std::size_t slot_bytes = sample.size_bytes() / std::size_t(sample.slot_count());
         const std::size_t tiles = tiles_in_frustum(*content, shape, view);

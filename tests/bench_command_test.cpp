@@ -148,16 +148,30 @@ TEST(BenchStructure, HasTheSamePictureAsARegularGrid) {
 TEST(BenchExploration, CountsWhatAMovingCameraNeeds) {
     const ScratchFolder folder;
     const nlohmann::json rows = rows_of("exploration", "32", "builtin:cornell", folder);
-    ASSERT_EQ(rows.size(), 4U);
+    ASSERT_EQ(rows.size(), 5U);
     EXPECT_EQ(rows[0]["part"], "exploration");
     EXPECT_GT(rows[0]["bricks"], 0.0);
+    EXPECT_EQ(rows[1]["part"], "steady");
+    EXPECT_GT(rows[1]["bricks"], 0.0);
     for (const nlohmann::json& row : rows) {
         EXPECT_GE(row["milliseconds"], row["render_ms"]) << row;
         EXPECT_GE(row["passes"], 1.0) << row;
-        if (row["part"] != "exploration") {
+        const double parts = double(row["bricks_ms"]) + double(row["upload_ms"]) + double(row["tree_ms"]);
+        EXPECT_GE(row["milliseconds"], parts) << row;
+        EXPECT_GE(row["bricks_ms"], 0.0) << row;
+        EXPECT_GT(row["upload_ms"], 0.0) << row;
+        if (row["part"] != "exploration" && row["part"] != "steady") {
             EXPECT_EQ(row["bricks"], 0.0) << row;
         }
     }
+}
+
+TEST(BenchExploration, ExploresTheSpongeInATreeOfItsOwn) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("exploration", "24", "builtin:sponge", folder);
+    ASSERT_EQ(rows.size(), 5U);
+    EXPECT_EQ(rows[0]["scene"], "sponge");
+    EXPECT_GT(rows[0]["bricks"], 0.0);
 }
 
 TEST(BenchProduction, ProducesWhatIsUsed) {
