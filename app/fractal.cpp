@@ -16,11 +16,16 @@ namespace {
 constexpr int most_zoom = 46;
 /// For N = 4 and M = 16.
 constexpr int deepest_level = 28;
+constexpr int finest_sponge = 1594323;  // 3^13
 
 }  // namespace
 
 bool is_fractal(const SceneOptions& scene) {
     return scene.scene == "builtin:fractal";
+}
+
+bool is_sponge(const SceneOptions& scene) {
+    return scene.scene == "builtin:sponge";
 }
 
 void add_zoom_option(CLI::App& verb, int& zoom) {
@@ -39,6 +44,14 @@ renderer::TreeOptions fractal_tree(const ViewOptions& options) {
                     "leave the option out; --pixel-error makes voxels coarser");
     }
     tree.max_level = deepest_level;
+    return tree;
+}
+
+renderer::TreeOptions sponge_tree(const ViewOptions& options) {
+    renderer::TreeOptions tree = options.tree;
+    tree.n = 3;
+    tree.m = 27;
+    if (tree.max_resolution == renderer::TreeOptions{}.max_resolution) tree.max_resolution = finest_sponge;
     return tree;
 }
 

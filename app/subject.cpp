@@ -12,12 +12,12 @@
 namespace cairn::app {
 
 Subject::Subject(const SceneOptions& scene, const ViewOptions& options, bool quiet)
-    : fractal_(is_fractal(scene)) {
+    : fractal_(is_fractal(scene)), sponge_(is_sponge(scene)) {
     if (options.zoom != 0 && !fractal_) {
         throw Error(Fault::usage, "--zoom", "this scene has a finest level",
                     "use --camera, or builtin:fractal");
     }
-    if (fractal_) return;
+    if (fractal_ || sponge_) return;
     if (!is_volume(scene.scene)) {
         if (options.transfer || options.copies != 1)
             throw Error(Fault::usage, options.transfer ? "--transfer" : "--copies", "the scene is no volume",
@@ -39,6 +39,7 @@ Subject::Subject(const SceneOptions& scene, const ViewOptions& options, bool qui
 
 scenes::Bounds Subject::bounds() const {
     if (fractal_) return {glm::dvec3(-0.5), glm::dvec3(0.5)};
+    if (sponge_) return {glm::dvec3(0.0), glm::dvec3(1.0)};
     return scene_ ? scene_->snapshot.bounds : bounds_of(*field_);
 }
 
@@ -59,8 +60,8 @@ renderer::View Subject::view(const ViewOptions& options) const {
 }
 
 renderer::Renderer Subject::make_renderer(const ViewOptions& options, const gl::ShaderSource& shaders) const {
-    if (fractal_) {
-        const renderer::TreeOptions tree = fractal_tree(options);
+    if (fractal_ || sponge_) {
+        const renderer::TreeOptions tree = fractal_ ? fractal_tree(options) : sponge_tree(options);
         return {std::make_unique<renderer::FractalContent>(renderer::tree_shape_of(tree), shaders), tree,
                 shaders};
     }

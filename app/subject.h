@@ -10,7 +10,7 @@
 
 namespace cairn::app {
 
-/// What a verb shows: a scene at a moment, a volume, or the built-in fractal.
+/// What a verb shows: a scene at a moment, a volume, or one of the built-in sets.
 class Subject {
 public:
     /// Loads, and warns on stderr unless `quiet`. @throws Error as load_input() and scenes::load_volume() do.
@@ -26,6 +26,7 @@ public:
 
 private:
     bool fractal_;  ///< builtin:fractal
+    bool sponge_;   ///< builtin:sponge
     std::optional<SceneInput> scene_;
     std::shared_ptr<const renderer::Field> field_;  ///< when it is a volume
 };

@@ -70,6 +70,10 @@ struct ChartKind {
 /// Atty et al. 2005, sections 4.2 and 5.2: soft_shadow_map.csv and soft_shadow_map.png.
 [[nodiscard]] Chart chart_soft_shadow_map(const ChartOptions& options);
 
+/// What rays, occlusion queries (Crassin 2007, section 3.6) and the frustum alone have produced for the same
+/// views: visibility.csv.
+[[nodiscard]] Chart chart_visibility(const ChartOptions& options);
+
 /// Writes `folder`/`name`, and adds it to the chart's files.
 void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
                 const std::string& text);

@@ -17,6 +17,7 @@ std::span<const ChartKind> charts() {
         ChartKind{"moving-shadow", "animated scenes with soft shadows, by frame", chart_moving_shadow},
         ChartKind{"production", "bricks that a first frame produces, and uses", chart_production},
         ChartKind{"soft-shadow-map", "error and time of soft shadow maps", chart_soft_shadow_map},
+        ChartKind{"visibility", "bricks produced: rays, occlusion queries, frustum", chart_visibility},
     };
     return all;
 }

@@ -1,5 +1,6 @@
 // Crassin et al. 2008, Figure 7: the cost of a frame at three distances, and of the frames of a camera that
-// comes nearer: rays, production, passes, the tree.
+// comes nearer: rays, production, passes, uploading, the tree.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -7,6 +8,8 @@
 #include "bench/frames.h"
 #include "bench/real_scenes.h"
 #include "bench/samples.h"
+#include "bench/view_tiles.h"
+#include "renderer/marched_view.h"
 
 namespace cairn::bench {
 namespace {
@@ -14,6 +17,29 @@ namespace {
 constexpr int own_size = 256;
 constexpr int own_frames = 24;
 constexpr double nearest = 0.25;  // of the distance from which the whole is seen
+constexpr double voxels_a_frame = 4.0;
+
+/// What the table tells of a frame.
+struct Figures {
+    double render_ms = 0.0;
+    double bricks_ms = 0.0;
+    double upload_ms = 0.0;
+    double tree_ms = 0.0;
+    double bricks = 0.0;
+    double passes = 0.0;
+    double ms = 0.0;
+
+    /// A share of a frame's.
+    void add(const renderer::FrameStatistics& s, double share) {
+        render_ms += share * s.march_ms;
+        bricks_ms += share * (s.produce_ms - s.tree_ms - s.upload_ms);
+        upload_ms += share * s.upload_ms;
+        tree_ms += share * s.tree_ms;
+        bricks += share * double(s.bricks_produced);
+        passes += share * double(s.passes);
+        ms += share * s.milliseconds;
+    }
+};
 
 /// Its eye at a share of the distance.
 renderer::View at(renderer::View view, double share) {
@@ -31,6 +57,7 @@ public:
         renderer::Renderer ours = subject.make({}, options_.shaders);
         (void)ours.render(view);
         come_nearer(subject, ours, view);
+        go_steadily(subject, at(view, nearest));
         for (const auto& [name, share] :
              {std::pair("far", 2.0), std::pair("whole", 1.0), std::pair("near", nearest)})
             stand(subject, name, ours, at(view, share));
@@ -48,33 +75,50 @@ private:
             spent_ms += ms.back();
             march_ms.push_back(ours.statistics().march_ms);
         }
-        const renderer::FrameStatistics& s = ours.statistics();
-        add(subject, part, 1,
-            {median(march_ms), s.produce_ms - s.tree_ms, s.tree_ms, double(s.bricks_produced),
-             double(s.passes), median(ms)});
+        Figures figures;
+        figures.add(ours.statistics(), 1.0);
+        figures.render_ms = median(march_ms);
+        figures.ms = median(ms);
+        add(subject, part, 1, figures);
     }
 
     /// Means over the frames; the first, into empty pools, is not one of them.
     void come_nearer(const Subject& subject, renderer::Renderer& ours, const renderer::View& view) {
-        std::vector<double> sums(6, 0.0);
+        Figures mean;
         for (int frame = 1; frame <= own_frames; ++frame) {
             (void)ours.render(at(view, std::pow(nearest, double(frame) / own_frames)));
-            const renderer::FrameStatistics& s = ours.statistics();
-            const std::vector<double> figures = {s.march_ms,       s.produce_ms - s.tree_ms,
-                                                 s.tree_ms,        double(s.bricks_produced),
-                                                 double(s.passes), s.milliseconds};
-            for (std::size_t i = 0; i < sums.size(); ++i)
-                sums[i] += figures[i] / own_frames;
+            mean.add(ours.statistics(), 1.0 / own_frames);
         }
-        add(subject, "exploration", own_frames, sums);
+        add(subject, "exploration", own_frames, mean);
     }
 
-    /// @param figures  march, bricks, tree, number of bricks, passes, all
-    void add(const Subject& subject, const char* part, int frames, const std::vector<double>& figures) {
-        std::vector<Cell> row{subject.name(), std::string(part), std::int64_t(size_), std::int64_t(frames)};
-        row.insert(row.end(), figures.begin(), figures.end());
-        row.emplace_back(1000.0 / figures.back());
-        chart_.table.rows.push_back(on_this_machine(std::move(row)));
+    /// Straight on, four voxels of the nearest tile a frame: the speed of Crassin et al. 2008, Figure 7. As
+    /// they relax it over time, it drops at once where voxels become finer, and rises slowly.
+    void go_steadily(const Subject& subject, renderer::View view) {
+        const std::unique_ptr<renderer::Content> content = subject.content({}, options_.shaders);
+        const renderer::TreeShape shape = renderer::tree_shape_of(subject.fitted({}));
+        renderer::Renderer ours = subject.make({}, options_.shaders);
+        (void)ours.render(view);
+        Figures mean;
+        double step = 0.0;
+        for (int frame = 1; frame <= own_frames; ++frame) {
+            const ViewTest test(renderer::march_view(view, content->grid(), shape, nullptr), shape);
+            const double side = nearest_voxel_side(content->oracle(), test).value_or(0.0);
+            const double wanted = voxels_a_frame * side * content->grid().voxel_size;
+            step = frame == 1 ? wanted : std::min(wanted, std::sqrt(step * wanted));
+            const glm::dvec3 way = step * glm::normalize(view.camera.target - view.camera.eye);
+            view.camera.eye += way;
+            view.camera.target += way;
+            (void)ours.render(view);
+            mean.add(ours.statistics(), 1.0 / own_frames);
+        }
+        add(subject, "steady", own_frames, mean);
+    }
+
+    void add(const Subject& subject, const char* part, int frames, const Figures& f) {
+        chart_.table.rows.push_back(on_this_machine({subject.name(), std::string(part), std::int64_t(size_),
+                                                     std::int64_t(frames), f.render_ms, f.bricks_ms, f.bricks,
+                                                     f.passes, f.upload_ms, f.tree_ms, f.ms, 1000.0 / f.ms}));
     }
 
     const ChartOptions& options_;
@@ -86,11 +130,12 @@ private:
 
 Chart chart_exploration(const ChartOptions& options) {
     Chart chart;
-    chart.table.columns = {"scene",  "part",   "size", "frames",          "render_ms", "bricks_ms", "tree_ms",
-                           "bricks", "passes", "ms",   "frames_a_second", "driver",    "threads"};
+    chart.table.columns = {"scene",  "part",   "size",      "frames",  "render_ms", "bricks_ms",
+                           "bricks", "passes", "upload_ms", "tree_ms", "ms",        "frames_a_second",
+                           "driver", "threads"};
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) {
-        scenes = {"builtin:hollow-sphere", "builtin:tree"};
+        scenes = {"builtin:hollow-sphere", "builtin:sponge", "builtin:tree"};
         add_real_scenes(chart, options, {"stanford_bunny_69k.glb"}, scenes);
     }
     const std::vector<int> sizes =

@@ -8,10 +8,14 @@
 #include "bench/real_scenes.h"
 #include "gl/context.h"
 #include "renderer/produce/dense_field.h"
+#include "renderer/produce/fractal_content.h"
 #include "renderer/produce/made_fields.h"
+#include "renderer/produce/surface_content.h"
+#include "renderer/produce/volume_content.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "scenes/volume.h"
+#include "voxelizer/surface.h"
 
 namespace cairn::bench {
 namespace {
@@ -23,6 +27,8 @@ constexpr std::int64_t copy_resolution = 256;
 constexpr double optical_depth = 1.0;
 /// What does not show of a scan, as a share of its densities.
 constexpr double scan_empty = 0.3;
+/// 3^13, the most that rays can count. (Crassin et al. 2008 went to 4.8 million, 3^14.)
+constexpr int sponge_resolution = 1594323;
 
 /// @param empty  density that does not show; 0 where voxels that are coarse and thin are to show as such.
 renderer::TransferFunction opaque(double empty, double voxel_size) {
@@ -59,6 +65,7 @@ struct Subject::Data {
     std::optional<scenes::Snapshot> snapshot;
     std::optional<scenes::Volume> volume;
     bool is_repeated = false;
+    bool is_sponge = false;
 };
 
 Subject::Subject(const std::string& path) : data_(std::make_unique<Data>()), name_(scene_name(path)) {
@@ -66,6 +73,9 @@ Subject::Subject(const std::string& path) : data_(std::make_unique<Data>()), nam
     if (path == "builtin:hollow-sphere" || path == "builtin:spheres-repeated") {
         data_->is_repeated = path == "builtin:spheres-repeated";
         bounds_ = unit;
+    } else if (path == "builtin:sponge") {
+        data_->is_sponge = true;
+        bounds_ = {glm::dvec3(0.0), glm::dvec3(1.0)};
     } else if (scenes::is_volume_file(path)) {
         data_->volume = scenes::load_volume(path);
         bounds_ = data_->volume->bounds();
@@ -84,12 +94,21 @@ Cell Subject::triangles() const {
     return data_->snapshot ? Cell(std::int64_t(data_->snapshot->triangle_count)) : Cell{};
 }
 
-renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders) const {
-    if (data_->scene) return {*data_->scene, *data_->snapshot, tree, shaders};
+renderer::TreeOptions Subject::fitted(const renderer::TreeOptions& tree) const {
+    renderer::TreeOptions options = tree;
+    if (!data_->is_sponge) return options;
+    options.n = 3;
+    options.m = 27;
+    options.max_resolution = sponge_resolution;
+    return options;
+}
+
+Subject::Shown Subject::shown_field(const renderer::TreeOptions& tree) const {
     if (data_->volume) {
         const glm::dvec3& spacing = data_->volume->spacing;
         const double voxel_size = std::min({spacing.x, spacing.y, spacing.z});
-        return {*data_->volume, opaque(scan_empty, voxel_size), tree, {}, shaders};
+        return {std::make_shared<renderer::DenseField>(*data_->volume, tree.n),
+                opaque(scan_empty, voxel_size)};
     }
     const std::int64_t resolution = renderer::tree_shape_of(tree).resolution();
     const int copies = data_->is_repeated ? int(std::max<std::int64_t>(resolution / copy_resolution, 1)) : 1;
@@ -100,7 +119,32 @@ renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::Sh
         const auto repeated = std::make_shared<renderer::RepeatedField>(std::move(field), copies);
         field = std::make_shared<Moved>(repeated, bounds_.low);
     }
-    return {std::move(field), opaque(0.0, 1.0 / double(resolution)), tree, {}, shaders};
+    return {std::move(field), opaque(0.0, 1.0 / double(resolution))};
+}
+
+renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders) const {
+    if (data_->scene) return {*data_->scene, *data_->snapshot, tree, shaders};
+    if (data_->is_sponge) return {content(tree, shaders), fitted(tree), shaders};
+    Shown shown = shown_field(tree);
+    return {std::move(shown.field), shown.transfer, tree, {}, shaders};
+}
+
+std::unique_ptr<renderer::Content> Subject::content(const renderer::TreeOptions& tree,
+                                                    const gl::ShaderSource& shaders) const {
+    if (data_->scene) {
+        const renderer::TreeShape shape = renderer::tree_shape_of(tree);
+        const voxelizer::Grid grid = voxelizer::grid_around(data_->snapshot->bounds, shape.resolution());
+        const voxelizer::Surface surface =
+            voxelizer::build_surface(*data_->scene, *data_->snapshot, grid, {.attributes = true});
+        return std::make_unique<renderer::SurfaceContent>(shape, surface, shaders);
+    }
+    if (data_->is_sponge) {
+        return std::make_unique<renderer::FractalContent>(renderer::tree_shape_of(fitted(tree)), shaders);
+    }
+    Shown shown = shown_field(tree);
+    const renderer::VolumeShape shape =
+        renderer::make_volume_shape(shown.field->frame(), tree.n, tree.m, tree.max_resolution);
+    return std::make_unique<renderer::VolumeContent>(shape, std::move(shown.field), shown.transfer.visible());
 }
 
 renderer::View Subject::view(int width, int height) const {

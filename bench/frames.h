@@ -12,7 +12,8 @@ namespace cairn::bench {
 
 /// A scene or a volume that charts look at, by its path; besides what `cairn render` takes:
 /// builtin:hollow-sphere, the shell of Crassin 2007, section 3.7.2, and builtin:spheres-repeated, copies of
-/// it of 256^3 voxels each. Both have as many voxels as the tree allows.
+/// it of 256^3 voxels each. Both have as many voxels as the tree allows. And builtin:sponge, Menger's, in a
+/// tree of its own (renderer/produce/fractal_content.h).
 class Subject {
 public:
     explicit Subject(const std::string& path);
@@ -25,13 +26,24 @@ public:
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const scenes::Bounds& bounds() const { return bounds_; }
     [[nodiscard]] Cell triangles() const;  ///< nothing for a volume
+    /// The tree that make() and content() take for these options: others for the sponge alone.
+    [[nodiscard]] renderer::TreeOptions fitted(const renderer::TreeOptions& tree) const;
     [[nodiscard]] renderer::Renderer make(const renderer::TreeOptions& tree,
                                           const gl::ShaderSource& shaders) const;
+    /// What such a renderer shows, for those who look at it by other means.
+    [[nodiscard]] std::unique_ptr<renderer::Content> content(const renderer::TreeOptions& tree,
+                                                             const gl::ShaderSource& shaders) const;
     /// The whole of it.
     [[nodiscard]] renderer::View view(int width, int height) const;
 
 private:
     struct Data;
+    /// A volume or a made field, and how it is shown.
+    struct Shown {
+        std::shared_ptr<const renderer::Field> field;
+        renderer::TransferFunction transfer;
+    };
+    [[nodiscard]] Shown shown_field(const renderer::TreeOptions& tree) const;
     std::unique_ptr<Data> data_;
     std::string name_;
     scenes::Bounds bounds_;

@@ -14,7 +14,7 @@ constexpr int own_size = 512;
 
 /// Each run begins with empty pools.
 std::vector<Cell> measure(const Subject& subject, int size, const ChartOptions& options) {
-    std::vector<double> first_ms, produce_ms, tree_ms, brick_ms;
+    std::vector<double> first_ms, produce_ms, tree_ms, upload_ms, brick_ms;
     std::vector<Entrant> last;
     for (int run = 0; run < options.runs; ++run) {
         last.clear();
@@ -23,14 +23,15 @@ std::vector<Cell> measure(const Subject& subject, int size, const ChartOptions& 
         first_ms.push_back(first.milliseconds);
         produce_ms.push_back(first.produce_ms);
         tree_ms.push_back(first.tree_ms);
-        brick_ms.push_back((first.produce_ms - first.tree_ms) /
+        upload_ms.push_back(first.upload_ms);
+        brick_ms.push_back((first.produce_ms - first.tree_ms - first.upload_ms) /
                            double(std::max<std::uint64_t>(first.bricks_produced, 1)));
     }
     measure_in_turn(last, 1, options.budget_ms);
     const renderer::FrameStatistics& first = last.back().first;
     const auto used = double(std::max<std::uint64_t>(last.back().converged.bricks_used, 1));
     return on_this_machine({subject.name(), subject.triangles(), std::int64_t(size), median(first_ms),
-                            median(produce_ms), median(tree_ms), median(brick_ms),
+                            median(produce_ms), median(tree_ms), median(upload_ms), median(brick_ms),
                             std::int64_t(first.bricks_produced), std::int64_t(first.constant_tiles),
                             std::int64_t(last.back().converged.bricks_used),
                             double(first.bricks_produced) / used, std::int64_t(first.passes),
@@ -41,10 +42,10 @@ std::vector<Cell> measure(const Subject& subject, int size, const ChartOptions& 
 
 Chart chart_production(const ChartOptions& options) {
     Chart chart;
-    chart.table.columns = {
-        "scene",    "triangles",       "size",           "first_ms",    "produce_ms",         "tree_ms",
-        "brick_ms", "bricks_produced", "constant_tiles", "bricks_used", "produced_over_used", "passes",
-        "nodes",    "driver",          "threads"};
+    chart.table.columns = {"scene",           "triangles",      "size",        "first_ms",
+                           "produce_ms",      "tree_ms",        "upload_ms",   "brick_ms",
+                           "bricks_produced", "constant_tiles", "bricks_used", "produced_over_used",
+                           "passes",          "nodes",          "driver",      "threads"};
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) {
         scenes = {"builtin:cornell", "builtin:knot", "builtin:tree", "builtin:hollow-sphere"};

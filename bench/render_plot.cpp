@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/plot_style.h"
+
 namespace cairn::bench {
 namespace {
 
@@ -15,30 +17,6 @@ struct Point {
     double ms = 0.0;
     std::array<double, 2> errors{};  ///< of colours, of the silhouette
 };
-
-struct Style {
-    const char* color;
-    int point;
-};
-/// Okabe and Ito's colours, told apart by all.
-constexpr std::array<Style, 9> styles = {{{"#000000", 7},
-                                          {"#0072b2", 7},
-                                          {"#d55e00", 5},
-                                          {"#009e73", 9},
-                                          {"#cc79a7", 13},
-                                          {"#e69f00", 11},
-                                          {"#56b4e9", 15},
-                                          {"#777777", 7},
-                                          {"#a0522d", 5}}};
-
-std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += c == '\n' ? ' ' : c;
-    }
-    return out + '"';
-}
 
 class Plot {
 public:
@@ -137,7 +115,7 @@ private:
                 is_line = point.varied == "shape";
             }
             blocks += "EOD\n";
-            const Style& style = styles[s % styles.size()];
+            const PlotStyle& style = plot_styles[s % plot_styles.size()];
             plots += fmt::format(", $s{} using 1:2 with {} pt {} ps {} lw 1.4 lc \"{}\" title {}", s,
                                  is_line ? "linespoints" : "points", is_line ? style.point : 2,
                                  is_line ? 1.1 : 1.8, style.color, quoted(series_[s]));

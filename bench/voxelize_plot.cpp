@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/plot_style.h"
+
 namespace cairn::bench {
 namespace {
 
@@ -18,16 +20,6 @@ struct Point {
     double error = 0.0;
     bool has_voxels = false;
 };
-
-/// Text between double quotes, with nothing that gnuplot would read as a format or a command.
-std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += c == '\n' ? ' ' : c;
-    }
-    return out + '"';
-}
 
 template <typename T>
 void add_once(std::vector<T>& list, const T& value) {
@@ -88,21 +80,8 @@ public:
     }
 
 private:
-    struct Style {
-        const char* color;
-        int point;
-    };
-    /// Okabe and Ito's colours, told apart by all.
-    [[nodiscard]] static Style style_of(std::size_t method) {
-        constexpr std::array<Style, 8> styles = {{{"#0072b2", 7},
-                                                  {"#d55e00", 5},
-                                                  {"#009e73", 9},
-                                                  {"#cc79a7", 13},
-                                                  {"#e69f00", 11},
-                                                  {"#56b4e9", 15},
-                                                  {"#777777", 7},
-                                                  {"#a0522d", 5}}};
-        return styles[method % styles.size()];
+    [[nodiscard]] static PlotStyle style_of(std::size_t method) {
+        return plot_styles[1 + method % (plot_styles.size() - 1)];  // black marks the best
     }
 
     /// Heights: powers of ten of the error; lanes for exact methods under them, one for no voxels above.
@@ -208,7 +187,7 @@ private:
         std::string out;
         const double step = 0.96 / double(std::max<std::size_t>(methods_.size(), 1));
         for (std::size_t method = 0; method < methods_.size(); ++method) {
-            const Style style = style_of(method);
+            const PlotStyle style = style_of(method);
             out += fmt::format(
                 "set label {} {} at screen {:.4f},{:.4f} left point pt {} ps 1.5 lc \"{}\" "
                 "offset character 1.2,0 font \"sans,11\"\n",
@@ -237,7 +216,7 @@ private:
         out += heights(scene % columns == 0);
         out += "plot ";
         for (std::size_t method = 0; method < methods_.size(); ++method) {
-            const Style style = style_of(method);
+            const PlotStyle style = style_of(method);
             out += fmt::format(
                 "$d{0}_{1} using 1:2 with lines lw 1.2 lc \"{2}\", "
                 "$d{0}_{1} using 1:2:3 with points pt {3} ps variable lc \"{2}\", ",

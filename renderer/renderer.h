@@ -139,9 +139,12 @@ struct FrameStatistics {
     std::uint64_t bricks_prefetched = 0;  ///< produced by prefetch() since the frame before
     double march_ms = 0.0;                ///< of `milliseconds`: rays
     double produce_ms = 0.0;              ///< of `milliseconds`: subdividing, producing, uploading
-    double tree_ms = 0.0;                 ///< of `produce_ms`, by render(): all but the bricks
-    bool converged = true;                ///< nothing was missing: the picture is that of render()
-    std::uint64_t bricks_resident = 0;    ///< after the frame
+    double tree_ms = 0.0;                 ///< of `produce_ms`, by render(): neither bricks nor uploading
+    /// Of `produce_ms`: sending to the GPU what is made or kept in main memory: nodes, volumes' bricks, and
+    /// bricks that come back from there. What the GPU makes itself is not sent.
+    double upload_ms = 0.0;
+    bool converged = true;              ///< nothing was missing: the picture is that of render()
+    std::uint64_t bricks_resident = 0;  ///< after the frame
     /// Of those, the ones that rays read, or that were produced, since render() or the first of the
     /// render_within() for this view began.
     std::uint64_t bricks_used = 0;

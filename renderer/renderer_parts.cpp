@@ -165,6 +165,7 @@ void Renderer::Parts::request(std::uint32_t entry, bool may_stay) {
 /// Answers from main memory what is there.
 void Renderer::Parts::restore_requests() {
     cache->store(tree.take_evicted());
+    const auto start = Clock::now();
     std::vector<BrickRequest> unknown;
     std::vector<std::uint32_t> unknown_entries;
     for (std::size_t i = 0; i < requests.size(); ++i) {
@@ -174,6 +175,13 @@ void Renderer::Parts::restore_requests() {
     }
     requests = std::move(unknown);
     requested_entries = std::move(unknown_entries);
+    statistics.upload_ms += milliseconds_since(start);
+}
+
+void Renderer::Parts::upload_nodes() {
+    const auto start = Clock::now();
+    tree.upload();
+    statistics.upload_ms += milliseconds_since(start);
 }
 
 /// Puts bricks in the slots that they were given: from main memory where they are there, else produced.
@@ -189,6 +197,7 @@ void Renderer::Parts::produce_requests() {
         ++statistics.constant_tiles;
     }
     statistics.bricks_produced += requests.size();
+    statistics.upload_ms += content->producer().upload_ms();
     requests.clear();
     requested_entries.clear();
 }
@@ -220,8 +229,8 @@ void Renderer::Parts::serve(std::vector<std::uint32_t> queries) {
     produce_requests();
     const auto after_bricks = Clock::now();
     statistics.tile_queries += queries.size();
-    tree.upload();
     statistics.tree_ms += milliseconds_since(start) - milliseconds(after_bricks - before_bricks);
+    upload_nodes();
 }
 
 PassResult Renderer::Parts::march(PassKind kind) {
@@ -271,7 +280,7 @@ bool Renderer::Parts::serve_until(Clock::time_point deadline, const PassResult& 
         batches.learn(milliseconds_since(start), answered);
         all_answered += answered;
     }
-    tree.upload();
+    upload_nodes();
     return all_answered > 0;
 }
 

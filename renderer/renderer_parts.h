@@ -59,6 +59,7 @@ struct Renderer::Parts {
     void give_children(std::uint32_t entry);
     void request(std::uint32_t entry, bool may_stay);
     void restore_requests();
+    void upload_nodes();
     void produce_requests();
     /// Where only a tile's own brick tells whether anything finer would show, that comes first.
     [[nodiscard]] bool wants_brick_first(std::uint32_t entry) const {

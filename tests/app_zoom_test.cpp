@@ -25,6 +25,17 @@ TEST(AppZoom, PicturesOfTheFractalAreTheSameAtEachPowerOfFour) {
     EXPECT_TRUE(picture_at("41", folder) == first);
 }
 
+TEST(AppZoom, TheSpongeIsRenderedInItsOwnTreeAndIsNotZoomed) {
+    const ScratchFolder folder;
+    const std::string path = folder.file("sponge.png");
+    const Answer answer =
+        cairn({"render", "builtin:sponge", "--size", "48x48", "--max-resolution", "729", "-o", path});
+    EXPECT_EQ(answer.code, 0) << answer;
+    EXPECT_GT(read_text(path).size(), 1000U) << "a picture of nothing?";
+    EXPECT_EQ(cairn({"render", "builtin:sponge", "--zoom", "3"}).code, 2);
+    EXPECT_EQ(cairn({"render", "builtin:sponge", "--max-resolution", "20"}).code, 2);
+}
+
 TEST(AppZoom, WhatCannotBeZoomedIsRefused) {
     const Answer scene = cairn({"render", "builtin:cornell", "--zoom", "3"});
     EXPECT_EQ(scene.code, 2) << scene;

@@ -148,16 +148,30 @@ TEST(BenchStructure, HasTheSamePictureAsARegularGrid) {
 TEST(BenchExploration, CountsWhatAMovingCameraNeeds) {
     const ScratchFolder folder;
     const nlohmann::json rows = rows_of("exploration", "32", "builtin:cornell", folder);
-    ASSERT_EQ(rows.size(), 4U);
+    ASSERT_EQ(rows.size(), 5U);
     EXPECT_EQ(rows[0]["part"], "exploration");
     EXPECT_GT(rows[0]["bricks"], 0.0);
+    EXPECT_EQ(rows[1]["part"], "steady");
+    EXPECT_GT(rows[1]["bricks"], 0.0);
     for (const nlohmann::json& row : rows) {
         EXPECT_GE(row["milliseconds"], row["render_ms"]) << row;
         EXPECT_GE(row["passes"], 1.0) << row;
-        if (row["part"] != "exploration") {
+        const double parts = double(row["bricks_ms"]) + double(row["upload_ms"]) + double(row["tree_ms"]);
+        EXPECT_GE(row["milliseconds"], parts) << row;
+        EXPECT_GE(row["bricks_ms"], 0.0) << row;
+        EXPECT_GT(row["upload_ms"], 0.0) << row;
+        if (row["part"] != "exploration" && row["part"] != "steady") {
             EXPECT_EQ(row["bricks"], 0.0) << row;
         }
     }
+}
+
+TEST(BenchExploration, ExploresTheSpongeInATreeOfItsOwn) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("exploration", "24", "builtin:sponge", folder);
+    ASSERT_EQ(rows.size(), 5U);
+    EXPECT_EQ(rows[0]["scene"], "sponge");
+    EXPECT_GT(rows[0]["bricks"], 0.0);
 }
 
 TEST(BenchProduction, ProducesWhatIsUsed) {
@@ -168,6 +182,28 @@ TEST(BenchProduction, ProducesWhatIsUsed) {
     EXPECT_GE(rows[0]["bricks_produced"], rows[0]["bricks_used"]);
     EXPECT_LT(rows[0]["produced_over_used"], 1.3);
     EXPECT_GT(rows[0]["brick_ms"], 0.0);
+}
+
+TEST(BenchVisibility, RaysProduceLessThanQueriesAndQueriesLessThanTheFrustum) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("visibility", "48", "builtin:knot", folder);
+    ASSERT_EQ(rows.size(), 3U * 4U);
+    const std::vector<std::string> schemes = {"ray-guided", "occlusion-query", "occlusion-query-waiting",
+                                              "frustum"};
+    std::int64_t by_rays = 0, by_frustum = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const nlohmann::json& row = rows[i];
+        EXPECT_EQ(row["scheme"], schemes[i % 4]) << row;
+        EXPECT_EQ(row["view"], rows[i / 4 * 4]["view"]) << row;
+        EXPECT_EQ(row["missed"], 0) << row;
+        EXPECT_GT(row["bricks_used"], 0) << row;
+        EXPECT_GE(row["bricks_produced"], rows[i / 4 * 4]["bricks_produced"]) << row;
+        EXPECT_LE(row["bricks_produced"], rows[i / 4 * 4 + 3]["bricks_produced"]) << row;
+        EXPECT_EQ(row["queries"] > 0, i % 4 == 2 || (i % 4 == 1 && row["passes"] > 1)) << row;
+        EXPECT_GE(row["passes"], 1) << row;
+        (i % 4 == 0 ? by_rays : by_frustum) += i % 4 % 3 == 0 ? row["bricks_produced"].get<int>() : 0;
+    }
+    EXPECT_LT(by_rays, by_frustum);
 }
 
 TEST(BenchUsage, HasHelpThatFitsATerminal) {

@@ -11,23 +11,43 @@ namespace {
 constexpr std::size_t batch = 1024;
 constexpr unsigned group_size = 64;
 
-}  // namespace
+bool is_occupied(const Tile& tile, const TreeShape& shape) {
+    return shape.n == 3 ? sponge::occupied(tile.position, tile.level)
+                        : fractal::occupied(tile.position, shape.n_shift() * tile.level);
+}
 
-std::uint32_t fractal::neighbour_mask(const Tile& tile, int n_shift) {
+/// Bit x + 3 (y + 3 z): may voxels of the tile at (x, y, z) - 1 from this one be occupied?
+std::uint32_t neighbour_mask(const Tile& tile, const TreeShape& shape) {
     std::uint32_t mask = 0;
     for (int number = 0; number < 27; ++number) {
         const glm::i64vec3 step(number % 3 - 1, number / 3 % 3 - 1, number / 9 - 1);
-        if (occupied(tile.position + step, n_shift * tile.level)) mask |= 1U << unsigned(number);
+        if (is_occupied({tile.level, tile.position + step}, shape)) mask |= 1U << unsigned(number);
     }
     return mask;
+}
+
+/// As far as the grid can tell: where rays go through windows, nobody asks for the finest voxels.
+int grid_resolution(const TreeShape& shape) {
+    return shape.has_windows() ? shape.m : shape.resolution();
+}
+
+}  // namespace
+
+bool sponge::occupied(const glm::i64vec3& position, int level) {
+    glm::i64vec3 rest = position;
+    for (int digit = 0; digit < level; ++digit) {
+        const glm::bvec3 in_middle = glm::equal(rest % std::int64_t(3), glm::i64vec3(1));
+        if (int(in_middle.x) + int(in_middle.y) + int(in_middle.z) > 1) return false;
+        rest /= std::int64_t(3);
+    }
+    return rest == glm::i64vec3(0) && glm::all(glm::greaterThanEqual(position, glm::i64vec3(0)));
 }
 
 glm::uvec2 FractalOracle::child_mask(const Tile& tile) {
     glm::uvec2 mask(0);
     for (int child = 0; child < shape_.child_count(); ++child) {
         const Tile inner = child_of(tile, shape_.n, child);
-        if (fractal::occupied(inner.position, shape_.n_shift() * inner.level))
-            mask[child / 32] |= 1U << unsigned(child % 32);
+        if (is_occupied(inner, shape_)) mask[child / 32] |= 1U << unsigned(child % 32);
     }
     return mask;
 }
@@ -41,14 +61,13 @@ FractalProducer::FractalProducer(const TreeShape& shape, const gl::ShaderSource&
 std::vector<Produced> FractalProducer::produce(std::span<const BrickRequest> requests,
                                                const BrickPool& pool) {
     const auto side = std::size_t(shape_.m) + 2;
-    const auto blocks = std::size_t(shape_.m / 4) * std::size_t(shape_.m / 4) * std::size_t(shape_.m / 4);
-    const std::size_t words = blocks + (blocks + 63) / 64;
+    const auto words = std::size_t(shape_.mask_words());
     for (std::size_t first = 0; first < requests.size(); first += batch) {
         const std::size_t count = std::min(batch, requests.size() - first);
         std::vector<interop::FractalTile> tiles;
         for (const BrickRequest& request : requests.subspan(first, count)) {
             tiles.push_back({glm::ivec4(pool.first_texel(request.slot), request.slot),
-                             glm::uvec4(fractal::neighbour_mask(request.tile, shape_.n_shift()), 0, 0, 0)});
+                             glm::uvec4(neighbour_mask(request.tile, shape_), 0, 0, 0)});
         }
         tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::FractalTile));
         tiles_.bind_storage(SSBO_BRICK_TILES);
@@ -69,9 +88,8 @@ std::vector<Produced> FractalProducer::produce(std::span<const BrickRequest> req
 
 FractalContent::FractalContent(const TreeShape& shape, const gl::ShaderSource& shaders)
     : oracle_(shape), producer_(shape, shaders) {
-    const int bits = shape.has_windows() ? shape.m_shift() : shape.voxel_level(shape.max_level);
-    grid_.resolution = glm::ivec3(1 << bits);
-    grid_.voxel_size = 1.0 / double(1 << bits);
+    grid_.resolution = glm::ivec3(grid_resolution(shape));
+    grid_.voxel_size = 1.0 / grid_.resolution.x;
 }
 
 }  // namespace cairn::renderer

@@ -22,10 +22,19 @@ namespace fractal {
     return outside == 0 && (position.x & position.y & position.z) == 0;
 }
 
-/// Bit x + 3 (y + 3 z): may voxels of the tile at (x, y, z) - 1 from this one be occupied?
-[[nodiscard]] std::uint32_t neighbour_mask(const Tile& tile, int n_shift);
-
 }  // namespace fractal
+
+/// Menger's sponge, in three dimensions what Sierpinski's carpet is in two: a cube of 27 without the seven
+/// that lie in the middle of at least two axes, and each of the 20 that are left likewise, without end. The
+/// procedural example of Crassin et al. 2008, section 7, who take one brick for all of its tiles.
+///
+/// The root cube is [0, 1]^3 of the world. For trees of N = 3. Dimension log(20) / log(3).
+namespace sponge {
+
+/// Is the voxel, or the tile, at this position of a grid of 3^level cubes across the root occupied?
+[[nodiscard]] bool occupied(const glm::i64vec3& position, int level);
+
+}  // namespace sponge
 
 class FractalOracle final : public Oracle {
 public:
@@ -37,7 +46,7 @@ private:
 };
 
 /// Fills bricks from the positions of their voxels in the tile and from which neighbours the tile has, so
-/// that 32 bits are enough at any depth.
+/// that 32 bits are enough at any depth. The set inside a tile is the sponge where N = 3, else the fractal.
 class FractalProducer final : public Producer {
 public:
     FractalProducer(const TreeShape& shape, const gl::ShaderSource& shaders);
@@ -50,6 +59,7 @@ private:
     gl::Buffer tiles_;
 };
 
+/// The sponge where the tree's N is 3, else the fractal.
 class FractalContent final : public Content {
 public:
     explicit FractalContent(const TreeShape& shape, const gl::ShaderSource& shaders = {});

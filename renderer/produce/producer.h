@@ -40,6 +40,9 @@ public:
     /// tile gives the same texels whatever it is produced with.
     /// @return one for each request.
     virtual std::vector<Produced> produce(std::span<const BrickRequest> requests, const BrickPool& pool) = 0;
+
+    /// Of the last produce(): milliseconds for sending bricks to the GPU, where it does not make them itself.
+    [[nodiscard]] virtual double upload_ms() const { return 0.0; }
 };
 
 }  // namespace cairn::renderer

@@ -1,6 +1,7 @@
 #include "renderer/produce/volume_content.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -168,6 +169,7 @@ VolumeProducer::VolumeProducer(const VolumeShape& shape, const Field& field, con
 
 std::vector<Produced> VolumeProducer::produce(std::span<const BrickRequest> requests, const BrickPool& pool) {
     std::vector<Produced> produced(requests.size());
+    upload_ms_ = 0.0;
     for (std::size_t i = 0; i < requests.size(); i += batch_) {
         const std::size_t count = std::min(batch_, requests.size() - i);
         std::vector<Produced> part(count);
@@ -192,9 +194,12 @@ void VolumeProducer::produce_batch(std::span<const BrickRequest> requests, const
         brick.write_masks(test_, masks_.data() + i * words);
         produced[i] = brick.analyse(test_);
     });
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
     upload_.write(0, texels_.data(), texels_.size());
     for (std::size_t i = 0; i < requests.size(); ++i)
         pool.upload(requests[i].slot, upload_, i * texels, {masks_.data() + i * words, words});
+    upload_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 VolumeContent::VolumeContent(const VolumeShape& shape, std::shared_ptr<const Field> field,

@@ -63,6 +63,7 @@ public:
     /// Refers to the field and the test, which must outlive it.
     VolumeProducer(const VolumeShape& shape, const Field& field, const DensityTest& test);
     std::vector<Produced> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+    [[nodiscard]] double upload_ms() const override { return upload_ms_; }
 
 private:
     void produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool,
@@ -75,6 +76,7 @@ private:
     std::vector<std::uint8_t> texels_;
     std::vector<std::uint64_t> masks_;
     gl::Buffer upload_;
+    double upload_ms_ = 0.0;
 };
 
 /// A field of densities: what Crassin et al. 2008 explore.

@@ -1,6 +1,7 @@
 // One thread is one voxel of a new brick of the fractal, border included.
-// defines: BRICK_M=16
-// defines: BRICK_M=8
+// defines: TREE_N=4 BRICK_M=16
+// defines: TREE_N=2 BRICK_M=8
+// defines: TREE_N=3 BRICK_M=27
 #include "produce/fractal.glsl"
 
 layout(local_size_x = 64) in;
@@ -11,11 +12,11 @@ layout(rgb10_a2, binding = IMAGE_BRICK_NORMAL) writeonly uniform image3D brick_n
 #define SIDE (BRICK_M + 2)
 #define VOXELS (SIDE * SIDE * SIDE)
 
-// A voxel at most one tile away: its tile may be empty, and no bit of its place in it may be set in all three.
+// A voxel at most one tile away: its tile may be empty, and so may its place in it.
 bool occupied(uint neighbours, ivec3 voxel) {
     const ivec3 tile = (voxel + BRICK_M) / BRICK_M;
     const int number = tile.x + 3 * (tile.y + 3 * tile.z);
-    return (neighbours >> number & 1u) != 0u && in_set(voxel & (BRICK_M - 1));
+    return (neighbours >> number & 1u) != 0u && in_set(voxel + BRICK_M - tile * BRICK_M);
 }
 
 void main() {
@@ -26,7 +27,8 @@ void main() {
     const ivec3 place = ivec3(v % SIDE, v / SIDE % SIDE, v / (SIDE * SIDE));
     const uint neighbours = tiles[tile].neighbours.x;
 
-    // Any projection of an occupied voxel along an axis is full, at any depth: a whole face is covered.
+    // Any projection of an occupied voxel of the fractal along an axis is full, at any depth: a whole face is covered.
+    // One of the sponge is not, but its voxels are taken for solid at each level (Crassin et al. 2008, section 7).
     const float covered = occupied(neighbours, place - 1) ? 1.0 : 0.0;
     ivec3 away = ivec3(0);
     for (int number = 0; number < 27; ++number) {

@@ -1,6 +1,7 @@
 // One thread is one word of a new brick's masks. A tile that has a brick is occupied, so they are the same in all.
-// defines: BRICK_M=16
-// defines: BRICK_M=8
+// defines: TREE_N=4 BRICK_M=16
+// defines: TREE_N=2 BRICK_M=8
+// defines: TREE_N=3 BRICK_M=27
 #include "produce/fractal.glsl"
 #include "pool/brick_masks.glsl"
 
@@ -17,13 +18,13 @@ void main() {
     const bool is_summary = word < SUMMARY_WORDS;
     const int block = word - SUMMARY_WORDS;
     uvec2 mask = uvec2(0u);
-    for (int bit = 0; bit < 64; ++bit) {
+    for (int bit = 0; bit < (is_summary ? 64 : CUBE(BLOCK_SIDE)); ++bit) {
         bool full;
         if (is_summary) {
             const int of = 64 * word + bit;
             full = of < BLOCKS && in_set(place_of(of, BLOCKS_A_SIDE));
         } else {
-            full = in_set(4 * place_of(block, BLOCKS_A_SIDE) + place_of(bit, 4));
+            full = in_set(BLOCK_SIDE * place_of(block, BLOCKS_A_SIDE) + place_of(bit, BLOCK_SIDE));
         }
         if (!full) continue;
         if (bit < 32) mask.x |= 1u << bit;
