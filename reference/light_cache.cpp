@@ -111,6 +111,9 @@ LightHash hash_of(const LightQuestion& question) {
     hasher.add(question.options.least_samples);
     hasher.add(question.options.most_samples);
     hasher.add(question.options.seed);
+    if (question.options.exact_strata == 0) return hasher.result();
+    hasher.add(question.options.exact_strata);
+    hasher.add(question.options.rays);
     return hasher.result();
 }
 
