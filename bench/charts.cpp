@@ -14,6 +14,8 @@ std::span<const ChartKind> charts() {
         ChartKind{"resolution", "the same view of 512^3 to 32768^3 voxels", chart_resolution},
         ChartKind{"structure", "N and M, and a regular grid, on a hollow sphere", chart_structure},
         ChartKind{"exploration", "frames at three distances, and on the way there", chart_exploration},
+        ChartKind{"shadow", "shadows by time and error, over every method", chart_shadow},
+        ChartKind{"shadow-rays", "shadow rays by their number and by resolution", chart_shadow_rays},
         ChartKind{"production", "bricks that a first frame produces, and uses", chart_production},
     };
     return all;

@@ -39,4 +39,13 @@ std::string run_gnuplot(const std::string& script, const std::filesystem::path& 
     return {};
 }
 
+std::string quoted(const std::string& text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') out += '\\';
+        out += c == '\n' ? ' ' : c;
+    }
+    return out + '"';
+}
+
 }  // namespace cairn::bench

@@ -9,4 +9,7 @@ namespace cairn::bench {
 /// @return what stood in the way, in words; empty when all went well.
 [[nodiscard]] std::string run_gnuplot(const std::string& script, const std::filesystem::path& folder);
 
+/// Text between double quotes, with nothing that gnuplot would read as a format or a command.
+[[nodiscard]] std::string quoted(const std::string& text);
+
 }  // namespace cairn::bench

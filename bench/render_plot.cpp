@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/gnuplot.h"
+
 namespace cairn::bench {
 namespace {
 
@@ -30,15 +32,6 @@ constexpr std::array<Style, 9> styles = {{{"#000000", 7},
                                           {"#56b4e9", 15},
                                           {"#777777", 7},
                                           {"#a0522d", 5}}};
-
-std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += c == '\n' ? ' ' : c;
-    }
-    return out + '"';
-}
 
 class Plot {
 public:

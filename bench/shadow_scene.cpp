@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "bench/real_scenes.h"
-#include "renderer/mesh/mesh_raster.h"
 #include "renderer/shadow/rectangle_light.h"
 #include "scenes/load.h"
 
@@ -14,15 +13,20 @@ namespace {
 // Lengths in diagonals of the scene.
 const glm::dvec3 to_light(-0.6, 1.0, 0.15);
 constexpr double light_distance = 1.5;
-constexpr double light_side = 0.3;
+constexpr double light_side = 0.2;
 constexpr double ground_gap = 0.002;  ///< under what stands lowest, not to lie in its plane
 constexpr double ground_margin = 0.15;
+
+/// How far on the ground the shadow of the bounds' top is from their foot.
+glm::dvec3 shadow_fall(const scenes::Bounds& bounds) {
+    const double height = bounds.high.y - bounds.low.y;
+    return glm::dvec3(-to_light.x, 0.0, -to_light.z) * (height / to_light.y);
+}
 
 /// Under the scene and where the shadow of its bounds falls.
 void add_ground(scenes::Scene& scene, const scenes::Bounds& bounds) {
     const double diagonal = glm::length(bounds.high - bounds.low);
-    const double height = bounds.high.y - bounds.low.y;
-    const glm::dvec3 fall = -to_light * (height / to_light.y);
+    const glm::dvec3 fall = shadow_fall(bounds);
     const glm::dvec3 low = glm::min(bounds.low, bounds.low + fall) - ground_margin * diagonal;
     const glm::dvec3 high = glm::max(bounds.high, bounds.high + fall) + ground_margin * diagonal;
     const double y = bounds.low.y - ground_gap * diagonal;
@@ -56,15 +60,27 @@ renderer::Light light_over(const scenes::Bounds& bounds) {
     return light;
 }
 
+/// Steeper than renderer::framing_camera(), from as far: the ground shows more of its shadow.
+renderer::Camera camera_above(const scenes::Bounds& bounds, double aspect) {
+    renderer::Camera camera = renderer::framing_camera(bounds, aspect);
+    const double distance = glm::distance(camera.eye, camera.target);
+    camera.eye = camera.target + distance * glm::normalize(glm::dvec3(0.3, 0.7, 1.0));
+    return camera;
+}
+
 }  // namespace
 
 ShadowScene::ShadowScene(const std::string& path, bool with_ground)
     : name_(scene_name(path)), scene_(scenes::load(path)) {
     const scenes::Bounds bounds = scenes::take_snapshot(scene_).bounds;
     light_ = light_over(bounds);
+    framed_ = bounds;
     ground_nodes_.assign(scene_.nodes.size(), false);
     if (with_ground) {
         add_ground(scene_, bounds);
+        framed_.add(bounds.low + shadow_fall(bounds) * 0.5);
+        framed_.add(bounds.high + shadow_fall(bounds) * 0.5 -
+                    glm::dvec3(0.0, bounds.high.y - bounds.low.y, 0.0));
         ground_nodes_.push_back(true);
     }
     caster_nodes_ = scenes::other_nodes(ground_nodes_);
@@ -76,35 +92,10 @@ renderer::View ShadowScene::view(int width, int height, int rays) const {
     renderer::View view;
     view.width = width;
     view.height = height;
-    view.camera = renderer::framing_camera(all_.bounds, double(width) / height);
+    view.camera = camera_above(framed_, double(width) / height);
     view.light = light_;
     view.shadow_rays = rays;
     return view;
-}
-
-std::shared_ptr<renderer::Renderer> shadowing_renderer(const ShadowScene& scene,
-                                                       const renderer::TreeOptions& tree,
-                                                       const gl::ShaderSource& shaders) {
-    auto made = std::make_shared<renderer::Renderer>(scene.scene(), scene.all(), tree, shaders);
-    made->set_mix({.meshes = std::make_shared<renderer::MeshRaster>(scene.scene(), scene.all(), shaders),
-                   .mesh_shadows = true,
-                   .meshes_are_voxelized = true,
-                   .voxels_hidden = true});
-    return made;
-}
-
-renderer::TreeOptions tree_of(int resolution) {
-    renderer::TreeOptions tree;
-    tree.max_resolution = resolution;
-    if (resolution < 16) {
-        tree.m = 8;
-        return tree;
-    }
-    int side = 16;
-    while (side * tree.n <= resolution)
-        side *= tree.n;
-    tree.m = side == resolution ? 16 : 32;
-    return tree;
 }
 
 }  // namespace cairn::bench

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "reference/area_light.h"
-#include "reference/shadow_truth.h"
-#include "renderer/camera.h"
 #include "renderer/light.h"
 #include "renderer/renderer.h"
 #include "scenes/node_selection.h"
@@ -34,7 +30,8 @@ public:
     [[nodiscard]] const scenes::NodeSelection& caster_nodes() const { return caster_nodes_; }
     [[nodiscard]] const scenes::NodeSelection& ground_nodes() const { return ground_nodes_; }
     [[nodiscard]] const renderer::Light& light() const { return light_; }
-    /// The whole of it, with that light. @param rays  to it, a pixel
+    /// All that throws shadows and the half of the shadow that is next to it, with that light. @param rays to
+    /// it, a pixel
     [[nodiscard]] renderer::View view(int width, int height, int rays) const;
 
 private:
@@ -42,18 +39,8 @@ private:
     scenes::Scene scene_;
     scenes::NodeSelection ground_nodes_, caster_nodes_;
     scenes::Snapshot all_, casters_;
+    scenes::Bounds framed_;  ///< what pictures show
     renderer::Light light_;
 };
-
-/// Frames of which only the shadow comes from voxels: the scene is rasterized, and rays go from its pixels to
-/// the light (Forest et al. 2009, section 3.1), as `cairn shadow` has it.
-[[nodiscard]] std::shared_ptr<renderer::Renderer> shadowing_renderer(const ShadowScene& scene,
-                                                                     const renderer::TreeOptions& tree,
-                                                                     const gl::ShaderSource& shaders);
-
-/// A tree of exactly so many voxels a side: 8, or 16 and more, a power of two.
-[[nodiscard]] renderer::TreeOptions tree_of(int resolution);
-/// Rays go by the finest voxels of their tree, whatever a pixel shows.
-constexpr double always_finest = 1e-3;  // pixel error
 
 }  // namespace cairn::bench

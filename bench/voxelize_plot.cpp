@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/gnuplot.h"
+
 namespace cairn::bench {
 namespace {
 
@@ -18,16 +20,6 @@ struct Point {
     double error = 0.0;
     bool has_voxels = false;
 };
-
-/// Text between double quotes, with nothing that gnuplot would read as a format or a command.
-std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += c == '\n' ? ' ' : c;
-    }
-    return out + '"';
-}
 
 template <typename T>
 void add_once(std::vector<T>& list, const T& value) {

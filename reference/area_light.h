@@ -33,7 +33,7 @@ struct AreaLightOptions {
     /// Not 0: each point takes exactly the square of this many samples, one in each of as many strata, so the
     /// three limits above do not count, and the standard error is the most that so few samples can have.
     int exact_strata = 0;
-    ImageTracer::Rays rays = ImageTracer::Rays::single;  ///< with exact_strata; the others go one by one
+    ImageTracer::Rays rays = ImageTracer::Rays::single;  ///< packets are faster, and find the same
 };
 
 struct LightVisibility {
