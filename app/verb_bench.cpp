@@ -76,6 +76,10 @@ void add_options(CLI::App& verb, Options& options) {
     add_parsed_option(
         verb, "--runs", "N", "medians are of so many runs, or fewer if slow (default: 7)",
         [&options](const std::string& text) { options.what.runs = parse_int("--runs", text, 1, max_runs); });
+    verb.add_option_function<std::string>(
+            "--truth-cache", [&options](const std::string& text) { options.what.truth_cache = text; },
+            "keeps what Embree found of soft lights in this folder,\nand takes it from there")
+        ->type_name("DIR");
     add_driver_options(verb, options.driver);
     add_report_options(verb, options.report);
 }

@@ -20,8 +20,12 @@ struct ChartOptions {
     /// Where to look for the real scenes among the chart's own choice; none: they are left out.
     std::optional<std::filesystem::path> scene_folder;
     std::vector<int> resolutions;  ///< voxels a side, or pixels; empty: the chart's own choice
-    int runs = 7;                  ///< of each contender, in turn; at least 1
-    double budget_ms = 3000.0;     ///< a contender is not run again once it has taken so long at one size
+    /// Pixels from left to right, where `resolutions` are voxels; none: the chart's own choice.
+    std::optional<int> width;
+    int runs = 7;               ///< of each contender, in turn; at least 1
+    double budget_ms = 3000.0;  ///< a contender is not run again once it has taken so long at one size
+    /// Keeps what Embree found of soft lights, which takes long; none: found anew.
+    std::optional<std::filesystem::path> truth_cache;
     gl::ShaderSource shaders;
     std::function<void(double)> progress;  ///< called with the share done, in [0, 1]; may be empty
 };
@@ -73,6 +77,13 @@ struct ChartKind {
 /// What rays, occlusion queries (Crassin 2007, section 3.6) and the frustum alone have produced for the same
 /// views: visibility.csv.
 [[nodiscard]] Chart chart_visibility(const ChartOptions& options);
+
+/// Shadows of a hard and of a soft light by every method there is, by time and by error against Embree:
+/// shadow.csv and shadow.png.
+[[nodiscard]] Chart chart_shadow(const ChartOptions& options);
+
+/// Forest et al. 2009, Tables 2 and 3: shadow_rays.csv.
+[[nodiscard]] Chart chart_shadow_rays(const ChartOptions& options);
 
 /// Writes `folder`/`name`, and adds it to the chart's files.
 void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,

@@ -15,6 +15,8 @@ std::span<const ChartKind> charts() {
         ChartKind{"structure", "N and M, and a regular grid, on a hollow sphere", chart_structure},
         ChartKind{"exploration", "frames at three distances, and on the way there", chart_exploration},
         ChartKind{"moving-shadow", "animated scenes with soft shadows, by frame", chart_moving_shadow},
+        ChartKind{"shadow", "shadows by time and error, over every method", chart_shadow},
+        ChartKind{"shadow-rays", "shadow rays by their number and by resolution", chart_shadow_rays},
         ChartKind{"production", "bricks that a first frame produces, and uses", chart_production},
         ChartKind{"soft-shadow-map", "error and time of soft shadow maps", chart_soft_shadow_map},
         ChartKind{"visibility", "bricks produced: rays, occlusion queries, frustum", chart_visibility},

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
+#include <vector>
 
 /// What the charts' pictures have in common.
 namespace cairn::bench {
@@ -24,5 +26,10 @@ constexpr std::array<PlotStyle, 9> plot_styles = {{{"#000000", 7},
 
 /// Text between double quotes, with nothing that gnuplot would read as a format or a command.
 [[nodiscard]] std::string quoted(const std::string& text);
+
+template <typename T>
+void add_once(std::vector<T>& list, const T& value) {
+    if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
 
 }  // namespace cairn::bench

@@ -71,9 +71,6 @@ public:
     }
 
 private:
-    static void add_once(std::vector<std::string>& list, const std::string& value) {
-        if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
-    }
     static std::string label(int number, const std::string& text, int size, double height) {
         return fmt::format("set label {} {} at screen 0.45,{:.4f} center font \"sans,{}\"\n", number,
                            quoted(text), height, size);

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/plot_style.h"
+
 namespace cairn::bench {
 namespace {
 
@@ -19,13 +21,10 @@ struct Point {
     double ms = 0.0;
 };
 
-struct Style {
-    const char* color;
-    int point;
-};
-/// Okabe and Ito's colours, told apart by all.
-constexpr std::array<Style, 6> styles = {
-    {{"#0072b2", 7}, {"#d55e00", 5}, {"#009e73", 9}, {"#cc79a7", 13}, {"#e69f00", 11}, {"#000000", 15}}};
+/// Black last.
+const PlotStyle& line_style(std::size_t line) {
+    return plot_styles[(line + 1) % plot_styles.size()];
+}
 
 constexpr double headroom = 1.45;  // over the curves, for their names
 
@@ -40,15 +39,6 @@ struct Panel {
     std::vector<Series> series;
     double power = 1.0;  ///< of the parameter, to the right
 };
-
-std::string quoted(const std::string& text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += c;
-    }
-    return out + '"';
-}
 
 class Plot {
 public:
@@ -99,11 +89,6 @@ public:
     }
 
 private:
-    template <typename T>
-    static void add_once(std::vector<T>& list, const T& value) {
-        if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
-    }
-
     /// Of one study with fitted windows in FP32.
     static Series passes_of(const std::string& occluder, const char* study, std::int64_t passes,
                             std::int64_t size = 0) {
@@ -193,7 +178,7 @@ private:
             }
             if (block.empty()) continue;
             out += fmt::format("$s{} << EOD\n{}EOD\n", s, block);
-            const Style& style = styles[s % styles.size()];
+            const PlotStyle& style = line_style(s);
             plots += fmt::format("{} $s{} using 1:2 with linespoints pt {} ps 0.9 lw 1.4 lc \"{}\" title {}",
                                  plots.empty() ? "plot" : ",", s, style.point, style.color,
                                  quoted(panel.series[s].title));

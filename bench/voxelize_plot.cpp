@@ -21,11 +21,6 @@ struct Point {
     bool has_voxels = false;
 };
 
-template <typename T>
-void add_once(std::vector<T>& list, const T& value) {
-    if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
-}
-
 class Plot {
 public:
     explicit Plot(const Table& table) {

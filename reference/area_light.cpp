@@ -1,6 +1,7 @@
 #include "reference/area_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -15,6 +16,7 @@ namespace {
 constexpr int strata = 8;  // an axis
 constexpr int round_samples = strata * strata;
 constexpr int least_rounds = 4;  // a spread of fewer says little
+constexpr int most_exact_strata = 256;
 
 /// SplitMix64 (Steele, Lea, Flood 2014): a stream for each point, whatever thread it runs on.
 class Random {
@@ -74,6 +76,8 @@ void check(std::span<const glm::dvec3> points, std::span<const glm::dvec3> norma
     if (!normals.empty() && normals.size() != points.size()) refuse("there must be one normal a point");
     if (!(options.standard_error > 0.0) || options.least_samples < 1 || options.most_samples < 1)
         refuse("the standard error and the counts of samples must be positive");
+    if (options.exact_strata < 0 || options.exact_strata > most_exact_strata)
+        refuse("there are at most 256 x 256 strata");
     if (light.shape != AreaLight::Shape::sphere) {
         if (!(glm::length(glm::cross(light.half_u, light.half_v)) > 0.0))
             refuse("its half axes span no area");
@@ -84,29 +88,47 @@ void check(std::span<const glm::dvec3> points, std::span<const glm::dvec3> norma
         if (!(glm::distance(point, light.centre) > light.radius)) refuse("a point lies inside the sphere");
 }
 
-double visible_in_round(const ImageTracer& tracer, const glm::dvec3& point, const glm::dvec3& normal,
-                        const AreaLight& light, Random& random) {
+/// One sample in each of across x across strata. The rays go together, as many at once as Embree takes.
+/// @return how many see the light
+int visible_in_strata(const ImageTracer& tracer, const glm::dvec3& point, const glm::dvec3& normal,
+                      const AreaLight& light, int across, ImageTracer::Rays rays, Random& random) {
+    std::array<glm::dvec3, 8> samples;
+    std::size_t waiting = 0;
     int visible = 0;
-    for (int stratum = 0; stratum < round_samples; ++stratum) {
-        const double x = (stratum % strata + random.unit()) / strata;
-        const double y = (stratum / strata + random.unit()) / strata;
+    const auto send = [&] {
+        visible += tracer.count_reached(point, std::span(samples).first(waiting), rays);
+        waiting = 0;
+    };
+    for (int stratum = 0; stratum < across * across; ++stratum) {
+        const double x = (stratum % across + random.unit()) / across;
+        const double y = (stratum / across + random.unit()) / across;
         const glm::dvec3 sample = sample_of(light, point, x, y);
         if (normal != glm::dvec3(0.0) && glm::dot(sample - point, normal) <= 0.0) continue;
-        if (!tracer.blocked(point, sample)) ++visible;
+        samples[waiting++] = sample;
+        if (waiting == samples.size()) send();
     }
-    return double(visible) / round_samples;
+    send();
+    return visible;
 }
 
 LightVisibility visibility_of(const ImageTracer& tracer, const glm::dvec3& point, const glm::dvec3& normal,
                               const AreaLight& light, const AreaLightOptions& options, std::uint64_t stream) {
     Random random(Random(options.seed + stream).next());
+    const auto visible_share = [&](int across) {
+        return double(visible_in_strata(tracer, point, normal, light, across, options.rays, random)) /
+               (across * across);
+    };
+    if (options.exact_strata > 0) {
+        return {visible_share(options.exact_strata), 0.5 / options.exact_strata,
+                options.exact_strata * options.exact_strata};
+    }
     const int enough = std::max(least_rounds, (options.least_samples + round_samples - 1) / round_samples);
     const int most = std::max(enough, options.most_samples / round_samples);
     double mean = 0.0;
     double squares = 0.0;  // of deviations from the mean, as rounds come in (Welford 1962)
     LightVisibility result;
     for (int round = 1; round <= most; ++round) {
-        const double value = visible_in_round(tracer, point, normal, light, random);
+        const double value = visible_share(strata);
         const double before = value - mean;
         mean += before / round;
         squares += before * (value - mean);

@@ -30,6 +30,10 @@ struct AreaLightOptions {
     int most_samples = 65536;           ///< sampling of a point stops here in any case
     std::uint64_t seed = 1;
     int threads = 0;  ///< 0 = all cores; the result does not depend on it
+    /// Not 0: each point takes exactly the square of this many samples, one in each of as many strata, so the
+    /// three limits above do not count, and the standard error is the most that so few samples can have.
+    int exact_strata = 0;
+    ImageTracer::Rays rays = ImageTracer::Rays::single;  ///< packets are faster, and find the same
 };
 
 struct LightVisibility {

@@ -1,5 +1,6 @@
 #include "reference/image.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -22,6 +23,21 @@ constexpr int packet_rays = 8;
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+void put(RTCRay8& to, int i, const RTCRay& ray) {
+    to.org_x[i] = ray.org_x;
+    to.org_y[i] = ray.org_y;
+    to.org_z[i] = ray.org_z;
+    to.dir_x[i] = ray.dir_x;
+    to.dir_y[i] = ray.dir_y;
+    to.dir_z[i] = ray.dir_z;
+    to.tnear[i] = ray.tnear;
+    to.tfar[i] = ray.tfar;
+    to.time[i] = ray.time;
+    to.mask[i] = ray.mask;
+    to.id[i] = ray.id;
+    to.flags[i] = ray.flags;
 }
 
 /// One picture's worth of rays.
@@ -59,21 +75,6 @@ struct Work {
     }
 
 private:
-    static void put(RTCRay8& to, int i, const RTCRay& ray) {
-        to.org_x[i] = ray.org_x;
-        to.org_y[i] = ray.org_y;
-        to.org_z[i] = ray.org_z;
-        to.dir_x[i] = ray.dir_x;
-        to.dir_y[i] = ray.dir_y;
-        to.dir_z[i] = ray.dir_z;
-        to.tnear[i] = ray.tnear;
-        to.tfar[i] = ray.tfar;
-        to.time[i] = ray.time;
-        to.mask[i] = ray.mask;
-        to.id[i] = ray.id;
-        to.flags[i] = ray.flags;
-    }
-
     void trace_packet(int x0, int y0) const {
         alignas(32) std::array<int, packet_rays> valid{};
         alignas(32) std::array<int, packet_rays> shadowed{};
@@ -130,9 +131,39 @@ bool ImageTracer::blocked(const glm::dvec3& from, const glm::dvec3& to) const {
     const double gap = 1e-5 * parts_->scene.size;
     if (!(length > 2.0 * gap)) return false;
     RTCRay ray;
-    set_ray(ray, glm::vec3(from - parts_->scene.centre), glm::vec3(way / length), float(gap), float(length - gap));
+    set_ray(ray, glm::vec3(from - parts_->scene.centre), glm::vec3(way / length), float(gap),
+            float(length - gap));
     occluded(parts_->scene.tree.get(), ray);
     return ray.tfar < 0.0F;
+}
+
+int ImageTracer::count_reached(const glm::dvec3& from, std::span<const glm::dvec3> to, Rays kind) const {
+    if (kind == Rays::single)
+        return int(
+            std::count_if(to.begin(), to.end(), [&](const glm::dvec3& p) { return !blocked(from, p); }));
+    const double gap = 1e-5 * parts_->scene.size;
+    const glm::vec3 origin(from - parts_->scene.centre);
+    int reached = 0;
+    while (!to.empty()) {
+        const std::size_t count = std::min(to.size(), std::size_t(packet_rays));
+        alignas(32) std::array<int, packet_rays> valid{};
+        RTCRay8 rays;
+        for (std::size_t i = 0; i < packet_rays; ++i) {
+            const glm::dvec3 way = to[std::min(i, count - 1)] - from;
+            const double length = glm::length(way);
+            const bool is_ray = i < count && length > 2.0 * gap;
+            reached += i < count && !is_ray ? 1 : 0;
+            valid[i] = is_ray ? -1 : 0;
+            RTCRay ray;
+            set_ray(ray, origin, glm::vec3(way / length), float(gap), float(length - gap));
+            put(rays, int(i), ray);
+        }
+        occluded8(valid.data(), parts_->scene.tree.get(), rays);
+        for (std::size_t i = 0; i < packet_rays; ++i)
+            reached += valid[i] != 0 && rays.tfar[i] >= 0.0F ? 1 : 0;
+        to = to.subspan(count);
+    }
+    return reached;
 }
 
 double ImageTracer::build_milliseconds() const {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -83,6 +84,8 @@ public:
     /// Whether a surface stands between two points of the world. Either end's own surface does not count:
     /// what is nearer to `from` or `to` than 1e-5 of the scene's diagonal is not seen.
     [[nodiscard]] bool blocked(const glm::dvec3& from, const glm::dvec3& to) const;
+    /// To how many points no surface stands in the way, in the same sense.
+    [[nodiscard]] int count_reached(const glm::dvec3& from, std::span<const glm::dvec3> to, Rays kind) const;
 
     [[nodiscard]] double build_milliseconds() const;
 

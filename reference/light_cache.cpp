@@ -111,6 +111,11 @@ LightHash hash_of(const LightQuestion& question) {
     hasher.add(question.options.least_samples);
     hasher.add(question.options.most_samples);
     hasher.add(question.options.seed);
+    // What came later leaves the hashes of older answers alone.
+    if (question.options.exact_strata == 0 && question.options.rays == ImageTracer::Rays::single)
+        return hasher.result();
+    hasher.add(question.options.exact_strata);
+    hasher.add(question.options.rays);
     return hasher.result();
 }
 

@@ -133,6 +133,38 @@ TEST(AreaLight, DoesNotDependOnTheThreads) {
         EXPECT_EQ(alone[i].visible, together[i].visible) << "point " << i;
 }
 
+// So many samples and no more, for a peer of shadow rays: their error against the closed form falls with
+// their count, and packets find what single rays find.
+TEST(AreaLight, ExactStrataTakeThatManySamples) {
+    const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.5), square({0, 0, 0}, 2.0));
+    const AreaLight light = {.centre = {0, 2, 0}, .half_u = {0.4, 0, 0}, .half_v = {0, 0, 0.4}};
+    const ImageTracer tracer(scene.scene, scene.occluders);
+    const std::vector<dvec2> polygon = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+    std::vector<dvec3> points;
+    for (int i = 0; i < 400; ++i)
+        points.emplace_back(0.6 + 0.8 * (i % 20) / 20.0, 0.0, -0.8 + 1.6 * (i / 20) / 20.0);
+    double before = 1.0;
+    for (const int strata : {1, 2, 3, 4, 8, 16}) {
+        AreaLightOptions options;
+        options.exact_strata = strata;
+        const auto found = area_light_visibility(tracer, points, {}, light, options);
+        options.rays = ImageTracer::Rays::packets;
+        const auto packets = area_light_visibility(tracer, points, {}, light, options);
+        double squares = 0.0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const double truth =
+                test::visible_past(polygon, 1.0, {points[i].x, points[i].z, 2.0}, {0.4, 0.4});
+            EXPECT_EQ(found[i].samples, strata * strata);
+            EXPECT_EQ(found[i].visible, packets[i].visible) << "point " << i << ", strata " << strata;
+            squares += std::pow(found[i].visible - truth, 2);
+        }
+        const double rmse = std::sqrt(squares / double(points.size()));
+        EXPECT_LT(rmse, before) << strata << " strata";
+        EXPECT_LE(rmse, 0.5 / strata);
+        before = 0.75 * rmse;
+    }
+}
+
 TEST(AreaLight, RefusesWhatIsNoLight) {
     const ShadowScene scene(square({0, 1, 0}, 0.1), square({0, 0, 0}, 2.0));
     const auto refused = [&](const AreaLight& light, const AreaLightOptions& options = {}) {
@@ -147,6 +179,8 @@ TEST(AreaLight, RefusesWhatIsNoLight) {
     EXPECT_TRUE(refused({.shape = AreaLight::Shape::sphere, .radius = 0.0}));
     EXPECT_TRUE(refused({.shape = AreaLight::Shape::sphere, .centre = {0, 0.1, 0}, .radius = 0.2}));
     EXPECT_TRUE(refused({}, {.standard_error = 0.0}));
+    EXPECT_TRUE(refused({}, {.exact_strata = -1}));
+    EXPECT_TRUE(refused({}, {.exact_strata = 257}));
     EXPECT_FALSE(refused({}));
 }
 

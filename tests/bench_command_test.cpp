@@ -209,7 +209,7 @@ TEST(BenchVisibility, RaysProduceLessThanQueriesAndQueriesLessThanTheFrustum) {
 TEST(BenchUsage, HasHelpThatFitsATerminal) {
     const Answer answer = cairn({"bench", "--help"});
     EXPECT_EQ(answer.code, 0) << answer;
-    for (const char* word : {"voxelize", "render", "--scenes", "--resolutions", "--json"})
+    for (const char* word : {"voxelize", "render", "--scenes", "--resolutions", "--truth-cache", "--json"})
         EXPECT_NE(answer.out.find(word), std::string::npos) << word;
     for (const std::string& line : lines_of(answer.out))
         EXPECT_LE(line.size(), 100U) << line;

@@ -170,6 +170,19 @@ TEST(ShadowTruth, CacheThatCannotBeWrittenIsTold) {
     }
 }
 
+// Exactly so many samples, and packets, are questions of their own.
+TEST(ShadowTruth, ExactSamplesAreAnotherQuestion) {
+    Knot knot;
+    const std::vector<glm::dvec3> points = {{0, 0, 0}};
+    const AreaLight light = area_light_of(knot.light, knot.snapshot.bounds);
+    const auto hash = [&](const AreaLightOptions& options) {
+        return hash_of({knot.scene, knot.snapshot, points, points, light, options});
+    };
+    EXPECT_NE(hash({}), hash({.exact_strata = 4}));
+    EXPECT_NE(hash({.exact_strata = 2}), hash({.exact_strata = 4}));
+    EXPECT_NE(hash({}), hash({.rays = ImageTracer::Rays::packets}));
+}
+
 // A hole in an alpha mask lets light through, so it is part of the question.
 TEST(ShadowTruth, MasksArePartOfTheQuestion) {
     Knot knot;
