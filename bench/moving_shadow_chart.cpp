@@ -24,9 +24,9 @@ namespace {
 constexpr int width = 320;
 constexpr int height = 240;
 constexpr double frames_per_second = 30.0;
-constexpr std::size_t most_frames = 30;
+constexpr int frames_a_run = 4;  // as many as --runs asks for, or all
 constexpr std::size_t checked_frames = 3;
-constexpr int truth_samples = 256;
+constexpr double truth_error = 1.0 / 256;  // far under that of the voxels
 
 /// Some of them, evenly.
 std::vector<double> thinned(const std::vector<double>& times, std::size_t most) {
@@ -40,13 +40,14 @@ std::vector<double> thinned(const std::vector<double>& times, std::size_t most) 
 /// A scene with its ground, and what Embree sees of it at some moments.
 class MovingScene {
 public:
-    explicit MovingScene(const std::string& path) : scene_(scenes::load(path)) {
+    MovingScene(const std::string& path, int runs) : scene_(scenes::load(path)) {
         if (scene_.animations.empty())
             throw Error(Fault::usage, path, "it has no animation", "choose an animated scene");
         when_.animation = 0;
         voxelized_ = scenes::bounds_over_animation(scene_, when_, frames_per_second);
         scenes::add_ground(scene_, voxelized_);
-        times_ = thinned(scenes::frame_times(scene_, when_, frames_per_second), most_frames);
+        times_ = thinned(scenes::frame_times(scene_, when_, frames_per_second),
+                         std::size_t(frames_a_run) * std::size_t(runs));
         view_.width = width;
         view_.height = height;
         // The ground receives shadows outside the grid too, and throws none.
@@ -91,7 +92,7 @@ private:
             const reference::ShadowReceivers receivers = reference::shadow_receivers(tracer, question);
             truths_.push_back(
                 {seconds, reference::hard_shares(receivers),
-                 reference::soft_shares(tracer, question, receivers, {.least_samples = truth_samples})
+                 reference::soft_shares(tracer, question, receivers, {.standard_error = truth_error})
                      .shares});
         }
     }
@@ -108,6 +109,7 @@ using Statistics = renderer::PyramidShadowStatistics;
 
 double median_of(const std::vector<Statistics>& frames, double Statistics::*part) {
     std::vector<double> values;
+    values.reserve(frames.size());
     for (const Statistics& frame : frames)
         values.push_back(frame.*part);
     return median(std::move(values));
@@ -176,7 +178,7 @@ Chart chart_moving_shadow(const ChartOptions& options) {
     constexpr int ray_counts[] = {1, 16, 64};
     double done = 0.0;
     for (const std::string& path : paths) {
-        const MovingScene scene(path);
+        const MovingScene scene(path, options.runs);
         for (const int resolution : resolutions) {
             renderer::PyramidShadowRenderer renderer = scene.make(resolution, options.shaders);
             for (const int rays : ray_counts) {

@@ -41,6 +41,7 @@ struct PyramidShadowRenderer::Parts {
     std::optional<voxelizer::GpuSurface> still;
     std::optional<voxelizer::MovingSurface> moving;
     std::optional<MeshRaster> raster;
+    bool raster_on_cpu = false;  ///< it shows a surface that the CPU built for one moment
     bool is_built = false;  ///< the pyramid is that of the surface as it stands
     double move_ms = 0.0;   ///< since the last frame
     PyramidShadowStatistics statistics;
@@ -98,6 +99,7 @@ PyramidShadowRenderer::PyramidShadowRenderer(const scenes::Scene& scene, const s
     : parts_(std::make_unique<Parts>(voxelizer::grid_around(bounds, options.resolution), options, shaders)) {
     parts_->moving.emplace(scene, when, parts_->grid, voxelizer::SurfaceOptions{.attributes = true}, shaders);
     parts_->raster.emplace(parts_->surface(), parts_->grid, shaders);
+    parts_->raster_on_cpu = parts_->moving->was_on_cpu();
 }
 
 PyramidShadowRenderer::PyramidShadowRenderer(PyramidShadowRenderer&&) noexcept = default;
@@ -110,11 +112,11 @@ void PyramidShadowRenderer::move_to(double seconds) {
         throw Error(Fault::usage, "moving scene", "the renderer was made for one moment",
                     "make it for a scene and the bounds of its animation");
     const auto start = Clock::now();
-    const bool was_on_cpu = parts.moving->was_on_cpu();
     parts.is_built = false;
     parts.moving->move_to(seconds);
-    if (was_on_cpu || parts.moving->was_on_cpu()) {
+    if (parts.moving->was_on_cpu() || parts.raster_on_cpu) {
         parts.raster->show(parts.surface());
+        parts.raster_on_cpu = parts.moving->was_on_cpu();
     } else {
         parts.raster->surface_moved();
     }

@@ -18,3 +18,4 @@ cairn_test(app_pyramid_test
   DEFINITIONS ${app_pyramid_definitions}
   TIMEOUT 180)
 add_dependencies(app_pyramid_test cairn_app)
+cairn_test(ground_test SOURCES ground_test.cpp LIBRARIES cairn::scenes)

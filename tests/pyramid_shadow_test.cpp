@@ -120,9 +120,11 @@ TEST_F(PyramidShadows, AreAsNearToEmbreeAsThoseOfTheTree) {
         const reference::ShadowQuestion question{scene,      snapshot,   all,        view.camera,
                                                  view.light, view.width, view.height};
         const auto receivers = reference::shadow_receivers(tracer, question);
-        const auto truth =
-            rays == 1 ? reference::hard_shares(receivers)
-                      : reference::soft_shares(tracer, question, receivers, {.least_samples = 64}).shares;
+        const auto truth = rays == 1
+                               ? reference::hard_shares(receivers)
+                               : reference::soft_shares(tracer, question, receivers,
+                                                        {.standard_error = 1.0 / 256, .least_samples = 64})
+                                     .shares;
         PyramidShadowRenderer pyramid(scene, snapshot, {.resolution = 512});
         // The same voxels.
         renderer::Renderer tree(scene, snapshot, {.n = 2, .m = 16, .max_resolution = 512});
@@ -294,8 +296,9 @@ TEST_F(PyramidShadows, RealScenesThatMoveAreNearEmbreeAtEveryFrame) {
             const reference::ShadowQuestion question{scene,      snapshot,   all,        view.camera,
                                                      view.light, view.width, view.height};
             const auto receivers = reference::shadow_receivers(tracer, question);
-            const auto truth =
-                reference::soft_shares(tracer, question, receivers, {.least_samples = 64}).shares;
+            const auto truth = reference::soft_shares(tracer, question, receivers,
+                                                      {.standard_error = 1.0 / 256, .least_samples = 64})
+                                   .shares;
             const auto error = reference::shadow_error(shares, truth);
             RecordProperty(fmt::format("{}_{}", name, part),
                            fmt::format("{} shadowed of {}, {:.4f} wrong, rmse {:.4f}", error.shadowed,
