@@ -96,7 +96,7 @@ private:
     /// they relax it over time, it drops at once where voxels become finer, and rises slowly.
     void go_steadily(const Subject& subject, renderer::View view) {
         const std::unique_ptr<renderer::Content> content = subject.content({}, options_.shaders);
-        const renderer::TreeShape shape = renderer::tree_shape_of(subject.fitted({}));
+        const renderer::TreeShape shape = subject.shape({});
         renderer::Renderer ours = subject.make({}, options_.shaders);
         (void)ours.render(view);
         Figures mean;

@@ -129,6 +129,12 @@ renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::Sh
     return {std::move(shown.field), shown.transfer, tree, {}, shaders};
 }
 
+renderer::TreeShape Subject::shape(const renderer::TreeOptions& tree) const {
+    if (!data_->volume) return renderer::tree_shape_of(fitted(tree));
+    const Shown shown = shown_field(tree);
+    return renderer::make_volume_shape(shown.field->frame(), tree.n, tree.m, tree.max_resolution).tree;
+}
+
 std::unique_ptr<renderer::Content> Subject::content(const renderer::TreeOptions& tree,
                                                     const gl::ShaderSource& shaders) const {
     if (data_->scene) {

@@ -30,6 +30,8 @@ public:
     [[nodiscard]] renderer::TreeOptions fitted(const renderer::TreeOptions& tree) const;
     [[nodiscard]] renderer::Renderer make(const renderer::TreeOptions& tree,
                                           const gl::ShaderSource& shaders) const;
+    /// Of that tree, no finer than a volume's voxels.
+    [[nodiscard]] renderer::TreeShape shape(const renderer::TreeOptions& tree) const;
     /// What such a renderer shows, for those who look at it by other means.
     [[nodiscard]] std::unique_ptr<renderer::Content> content(const renderer::TreeOptions& tree,
                                                              const gl::ShaderSource& shaders) const;

@@ -75,8 +75,7 @@ private:
     [[nodiscard]] std::unique_ptr<VisibleBricks> bricks(const renderer::View& view) const {
         const renderer::TreeOptions options = tree();
         return std::make_unique<VisibleBricks>(subject_.content(options, options_.shaders),
-                                               renderer::tree_shape_of(options), view, pool_bytes_,
-                                               options_.shaders);
+                                               subject_.shape(options), view, pool_bytes_, options_.shaders);
     }
 
     [[nodiscard]] static Outcome of(const Visibility& found) {
@@ -92,7 +91,7 @@ private:
 
     /// A pool for all that could be produced, if there can be one; no larger, since drivers clear them.
     [[nodiscard]] std::size_t bytes_for_frustum(const renderer::View& view) const {
-        const renderer::TreeShape shape = renderer::tree_shape_of(subject_.fitted({}));
+        const renderer::TreeShape shape = subject_.shape({});
         const std::unique_ptr<renderer::Content> content = subject_.content({}, options_.shaders);
         const renderer::BrickPool sample(shape, content->channels(), sample_pool_bytes);
         const std::size_t slot_bytes = sample.size_bytes() / std::size_t(sample.slot_count());

@@ -12,11 +12,26 @@ layout(rgb10_a2, binding = IMAGE_BRICK_NORMAL) writeonly uniform image3D brick_n
 #define SIDE (BRICK_M + 2)
 #define VOXELS (SIDE * SIDE * SIDE)
 
-// A voxel at most one tile away: its tile may be empty, and so may its place in it.
-bool occupied(uint neighbours, ivec3 voxel) {
-    const ivec3 tile = (voxel + BRICK_M) / BRICK_M;
-    const int number = tile.x + 3 * (tile.y + 3 * tile.z);
-    return (neighbours >> number & 1u) != 0u && in_set(voxel + BRICK_M - tile * BRICK_M);
+// A voxel at most one tile away.
+struct Voxel {
+    ivec3 tile;    // [0, 2]; 1 is the brick's own
+    ivec3 digits;  // of its place in there
+};
+
+Voxel voxel_at(ivec3 place) {
+    const ivec3 tile = (place + BRICK_M) / BRICK_M;
+    return Voxel(tile, digits_of(place + BRICK_M - tile * BRICK_M));
+}
+
+// Its tile may be empty, and so may its place in it.
+bool occupied(uint neighbours, Voxel voxel) {
+    const int number = voxel.tile.x + 3 * (voxel.tile.y + 3 * voxel.tile.z);
+    return (neighbours >> number & 1u) != 0u && in_set(voxel.digits);
+}
+
+// Of three in a row along the diagonal, each coordinate from the one that its offset tells.
+ivec3 pick(ivec3 offset, ivec3 before, ivec3 here, ivec3 after) {
+    return mix(mix(before, after, equal(offset, ivec3(1))), here, equal(offset, ivec3(0)));
 }
 
 void main() {
@@ -29,11 +44,16 @@ void main() {
 
     // Any projection of an occupied voxel of the fractal along an axis is full, at any depth: a whole face is covered.
     // One of the sponge is not, but its voxels are taken for solid at each level (Crassin et al. 2008, section 7).
-    const float covered = occupied(neighbours, place - 1) ? 1.0 : 0.0;
+    const Voxel here = voxel_at(place - 1);
+    const float covered = occupied(neighbours, here) ? 1.0 : 0.0;
+    const Voxel before = voxel_at(place - 2);
+    const Voxel after = voxel_at(place);
     ivec3 away = ivec3(0);
     for (int number = 0; number < 27; ++number) {
         const ivec3 offset = ivec3(number % 3, number / 3 % 3, number / 9) - 1;
-        if (occupied(neighbours, place - 1 + offset)) away -= offset;
+        const Voxel near = Voxel(pick(offset, before.tile, here.tile, after.tile),
+                                 pick(offset, before.digits, here.digits, after.digits));
+        if (occupied(neighbours, near)) away -= offset;
     }
     const float size = length(vec3(away));
     const vec3 normal = size > 0.0 ? vec3(away) / size : vec3(0.0);

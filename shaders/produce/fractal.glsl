@@ -6,15 +6,22 @@ layout(std430, binding = SSBO_BRICK_TILES) readonly buffer TileBlock { FractalTi
 
 uniform uint tile_count;
 
+// What in_set() asks of a place in a tile, each coordinate by itself.
 #if TREE_N == 3
-// No place of a cube of 27 on the way down lies in the middle of two axes.
-bool in_set(ivec3 place) {
+// Bit i: is its digit i a 1, so that a cube of 27 on the way down lies in the middle of this axis? Of two axes none may.
+ivec3 digits_of(ivec3 place) {
+    ivec3 ones = ivec3(0);
+    int bit = 1;
     for (int side = 1; side < BRICK_M; side *= 3) {
-        const ivec3 in_middle = ivec3(equal(place / side % 3, ivec3(1)));
-        if (in_middle.x + in_middle.y + in_middle.z > 1) return false;
+        const ivec3 rest = place / 3;
+        ones |= ivec3(equal(place - 3 * rest, ivec3(1))) * bit;
+        place = rest;
+        bit *= 2;
     }
-    return true;
+    return ones;
 }
+bool in_set(ivec3 digits) { return ((digits.x & digits.y) | (digits.y & digits.z) | (digits.z & digits.x)) == 0; }
 #else
-bool in_set(ivec3 place) { return (place.x & place.y & place.z) == 0; }
+ivec3 digits_of(ivec3 place) { return place; }
+bool in_set(ivec3 digits) { return (digits.x & digits.y & digits.z) == 0; }
 #endif
