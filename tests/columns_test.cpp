@@ -388,6 +388,45 @@ TEST_F(ColumnRays, AdaptiveMasksTakeFewerTurns) {
     EXPECT_LT(turns[1], 0.7 * turns[0]) << "adaptive, mip level";
 }
 
+/// A full grid with a tunnel along a ray, no wider than rounding asks for.
+BitGrid tunnel(int side, const glm::dvec3& origin, const glm::dvec3& direction) {
+    constexpr double step = 0x1p-6;
+    BitGrid bits((glm::ivec3(side)));
+    std::fill(bits.words.begin(), bits.words.end(), 0xFFFFFFFFU);
+    for (double t = 0.0; t < 2.0 * side; t += step) {
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 shift(corner & 1 ? step : -step, corner & 2 ? step : -step,
+                                   corner & 4 ? step : -step);
+            const glm::ivec3 v(glm::floor(origin + t * direction + shift));
+            if (glm::any(glm::lessThan(v, glm::ivec3(0))) ||
+                glm::any(glm::greaterThanEqual(v, glm::ivec3(side))))
+                continue;
+            bits.words[bits.word_index(v.x, v.y, v.z)] &= ~(1U << (v.x % 32));
+        }
+    }
+    return bits;
+}
+
+TEST_F(ColumnRays, TurnTheirLoopsSeldomEnoughThatNoDriverEndsThem) {
+    // The limit that COLUMN_MOST_LEVELS stands on. In a tunnel every node that a ray crosses is refined.
+    constexpr int side = 256;
+    for (const glm::dvec3 direction : {glm::dvec3(1.0, 0.97, 0.93), glm::dvec3(0.03, 1.0, 0.99),
+                                       glm::dvec3(1.0, 0.02, 0.01), glm::dvec3(0.5, 1.0, 0.25)}) {
+        const glm::dvec3 origin(0.51, 0.37, 0.43);
+        const Columns columns(tunnel(side, origin, direction));
+        Probe probe;
+        probe.origin_start = glm::vec4(origin, 0.0F);
+        probe.direction_end = glm::vec4(direction, 1e30F);
+        for (std::size_t m = 0; m < masks.size(); ++m) {
+            const Probe found = columns.trace({probe}, masks[m])[0];
+            EXPECT_EQ(found.voxel_skipped.x, -1) << mask_names[m] << " " << text_of(probe);
+            EXPECT_GT(found.found.y, 20.0F) << mask_names[m] << " " << text_of(probe);
+            EXPECT_LT(found.found.y, float(12 * side)) << mask_names[m] << " " << text_of(probe);
+            RecordProperty(fmt::format("turns_{}_{}", m, direction.x), int(found.found.y));
+        }
+    }
+}
+
 TEST_F(ColumnRays, OtherResolutionsAreRefused) {
     for (const int resolution : {0, 4, 48, 4096, -8})
         EXPECT_THROW(ColumnPyramid{resolution}, Error) << resolution;
