@@ -21,8 +21,9 @@ using Rays = reference::ImageTracer::Rays;
 constexpr int own_resolution = 512;
 constexpr int own_rays = 16;
 constexpr std::array resolutions = {128, 256, 512, 1024, 2048};
-/// Holds what rays meet at the finest, so that no frame produces what the one before it had.
-constexpr std::size_t finest_pool_bytes = std::size_t(1) << 30U;
+/// A voxel a side. Surfaces grow with its square, but what a picture's rays meet of them more slowly; no frame
+/// should produce what the one before it had.
+constexpr std::size_t finest_pool_bytes = std::size_t(1) << 19U;
 constexpr std::array ray_counts = {1, 4, 16, 64, 256};
 constexpr std::array map_sizes = {64, 128, 256, 512};
 constexpr int own_map_size = 256;
@@ -39,7 +40,7 @@ ShadowRun run_voxels(const ShadowTrial& trial, std::optional<int> resolution, co
     const bool is_first = kept == nullptr;
     if (is_first) {
         renderer::TreeOptions tree = resolution ? tree_of(*resolution) : renderer::TreeOptions{};
-        if (resolution) tree.brick_pool_bytes = finest_pool_bytes;
+        if (resolution) tree.brick_pool_bytes = finest_pool_bytes * std::size_t(*resolution);
         kept = shadowing_renderer(trial.scene, tree, trial.options.shaders);
     }
     ShadowRun run = shadow_frame(*kept, view);

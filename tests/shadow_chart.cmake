@@ -6,5 +6,5 @@ if(CAIRN_BENCH)
     list(APPEND shadow_chart_definitions CAIRN_HAS_GNUPLOT)
   endif()
   cairn_test(shadow_chart_test SOURCES shadow_chart_test.cpp gl_fixture.h scratch_folder.h
-             LIBRARIES cairn_bench fmt::fmt DEFINITIONS ${shadow_chart_definitions} TIMEOUT 300)
+             LIBRARIES cairn_bench cairn::renderer cairn::reference fmt::fmt DEFINITIONS ${shadow_chart_definitions} TIMEOUT 300)
 endif()

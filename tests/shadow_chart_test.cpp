@@ -6,6 +6,9 @@
 #include <sstream>
 
 #include "bench/chart.h"
+#include "bench/shadow_runs.h"
+#include "bench/shadow_scene.h"
+#include "reference/shadow_truth.h"
 #include "tests/gl_fixture.h"
 #include "tests/scratch_folder.h"
 
@@ -210,6 +213,31 @@ TEST_F(ShadowChart, RaysHaveThePapersFiguresBeside) {
     EXPECT_LT(by_resolution[128], 0.5 * by_resolution[8]);
     EXPECT_TRUE(has_note(chart, "128 rays take"));
     EXPECT_TRUE(std::filesystem::exists(own.path() / "shadow_rays.csv"));
+}
+
+// Threads of a driver that run together share its limit of loop turns: a budget that is right for one alone
+// lost the last of many rays without a word, and the shadow grew lighter.
+TEST_F(ShadowChart, ManyRaysAreNoLessAccurateThanFew) {
+    const ShadowScene scene("builtin:knot");
+    constexpr int width = 48;
+    constexpr int height = 36;
+    renderer::View view = scene.view(width, height, 1);
+    const scenes::NodeSelection everything(scene.scene().nodes.size(), true);
+    const reference::ImageTracer tracer(scene.scene(), scene.all());
+    const reference::ShadowQuestion question{scene.scene(), scene.all(), everything, view.camera,
+                                             view.light,    width,       height};
+    const reference::ShadowReceivers receivers = shadow_receivers(tracer, question);
+    reference::AreaLightOptions sampling;
+    sampling.exact_strata = 32;
+    const std::vector<float> truth = soft_shares(tracer, question, receivers, sampling).shares;
+    const auto ours = shadowing_renderer(scene, tree_of(512), {});
+    view.pixel_error = always_finest;
+    const auto rmse = [&](int rays) {
+        view.shadow_rays = rays;
+        return reference::shadow_error(shadow_frame(*ours, view).shares, truth).rmse();
+    };
+    const double few = rmse(64);
+    EXPECT_LT(rmse(512), 1.1 * few);
 }
 
 }  // namespace

@@ -107,9 +107,9 @@
 #define TILE_REPORT_USED 2147483648u  // plus the slot
 
 // Cells that a ray may cross in one pass. Past it the ray pauses between two tiles and goes on in the next pass, so that no
-// dispatch runs for long, and no thread turns its loops more often than a driver lets it. Llvmpipe runs 8 or 16 threads side
-// by side and counts a turn when any of them makes one, so all of them together must stay under its 65535.
-#define TURN_BUDGET 3072
+// dispatch runs for long, and no thread turns its loops more often than a driver lets it. On llvmpipe up to 16 threads
+// go together, and each turn that any of them takes counts for all: where they part ways, their turns add up.
+#define TURN_BUDGET 2048
 
 // Voxels across the root cube stay below this, because a ray state packs three coordinates in 63 bits.
 #define MAX_RESOLUTION_BITS 21
