@@ -21,8 +21,10 @@ using Rays = reference::ImageTracer::Rays;
 constexpr int own_resolution = 512;
 constexpr int own_rays = 16;
 constexpr std::array resolutions = {128, 256, 512, 1024, 2048};
-/// A voxel a side. Surfaces grow with its square, but what a picture's rays meet of them more slowly; no frame
-/// should produce what the one before it had.
+/// The next does not fit where a buffer holds 128 MiB of texels.
+constexpr std::array pyramid_resolutions = {128, 256, 512, 1024};
+/// A voxel a side. Surfaces grow with its square, but what a picture's rays meet of them more slowly; no
+/// frame should produce what the one before it had.
 constexpr std::size_t finest_pool_bytes = std::size_t(1) << 19U;
 constexpr std::array ray_counts = {1, 4, 16, 64, 256};
 constexpr std::array map_sizes = {64, 128, 256, 512};
@@ -66,6 +68,27 @@ void add_voxel_rays(const ShadowTrial& trial, Contenders& all) {
         if (rays != own_rays) add("rays", rays, own_resolution);
     for (const int rays : ray_counts)
         add("rays, by pixel", rays, std::nullopt);
+}
+
+void add_pyramid(const ShadowTrial& trial, Contenders& all) {
+    const auto made = std::make_shared<std::map<int, ShadowFrames>>();
+    const auto add = [&](const char* varied, int rays, int resolution) {
+        const renderer::View view = trial.scene.view(trial.width, trial.height, rays);
+        all.push_back({.method = "pyramid",
+                       .setting = {.varied = varied, .rays = rays, .resolution = resolution},
+                       .run = [&trial, made, resolution, view] {
+                           ShadowFrames& frames = (*made)[resolution];
+                           if (!frames)
+                               frames = pyramid_frames(trial.scene, {.resolution = resolution},
+                                                       trial.options.shaders);
+                           return frames(view);
+                       }});
+    };
+    for (const int resolution : pyramid_resolutions)
+        add("resolution", trial.is_soft ? own_rays : 1, resolution);
+    if (!trial.is_soft) return;
+    for (const int rays : ray_counts)
+        if (rays != own_rays) add("rays", rays, own_resolution);
 }
 
 const char* name_of(renderer::ShadowFormat format) {
@@ -204,7 +227,8 @@ void add_embree(const ShadowTrial& trial, Contenders& all) {
 }  // namespace
 
 std::vector<ShadowContender> shadow_contenders(const ShadowTrial& trial) {
-    constexpr std::array makers = {add_voxel_rays, add_soft_shadow_maps, add_plain_maps, add_embree};
+    constexpr std::array makers = {add_voxel_rays, add_pyramid, add_soft_shadow_maps, add_plain_maps,
+                                   add_embree};
     Contenders all;
     for (const auto& add : makers)
         add(trial, all);

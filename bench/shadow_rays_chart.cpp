@@ -53,8 +53,8 @@ Cell paper_ms(std::span<const PaperRow> table, const std::string& scene, int num
     return row->ms[std::size_t(column - paper_scenes.begin())];
 }
 
-/// A frame of a view with shadows: through voxels of one resolution, whose preparation is kept.
-using Frames = std::function<ShadowRun(const renderer::View&)>;
+/// Through voxels of one resolution, whose preparation is kept.
+using Frames = ShadowFrames;
 struct Traversal {
     const char* name;
     Frames (*make)(const ShadowScene& scene, int resolution, const gl::ShaderSource& shaders);
@@ -69,7 +69,14 @@ Frames n3_tree(const ShadowScene& scene, int resolution, const gl::ShaderSource&
     };
 }
 
-constexpr std::array traversals = {Traversal{"n3-tree", n3_tree}};
+template <renderer::ColumnMask mask>
+Frames pyramid(const ShadowScene& scene, int resolution, const gl::ShaderSource& shaders) {
+    return pyramid_frames(scene, {resolution, mask}, shaders);
+}
+
+constexpr std::array traversals = {Traversal{"n3-tree", n3_tree},
+                                   Traversal{"pyramid", pyramid<renderer::ColumnMask::adaptive>},
+                                   Traversal{"pyramid-mip-mask", pyramid<renderer::ColumnMask::mip_level>}};
 
 struct Setting {
     const Traversal* traversal;

@@ -25,6 +25,22 @@ ShadowRun shadow_frame(renderer::Renderer& renderer, const renderer::View& view)
     return {frame.milliseconds, std::move(found.shares), frame.bricks_produced + frame.nodes_subdivided > 0};
 }
 
+ShadowFrames pyramid_frames(const ShadowScene& scene, const renderer::PyramidShadowOptions& options,
+                            const gl::ShaderSource& shaders) {
+    struct Kept {
+        renderer::PyramidShadowRenderer renderer;
+        bool is_first = true;
+    };
+    const auto kept = std::make_shared<Kept>(
+        Kept{renderer::PyramidShadowRenderer(scene.scene(), scene.all(), options, shaders)});
+    return [kept](const renderer::View& view) {
+        renderer::LightShares found = kept->renderer.light_shares(view);
+        const bool is_first = std::exchange(kept->is_first, false);
+        return ShadowRun{kept->renderer.statistics().milliseconds, std::move(found.shares), is_first,
+                         is_first};
+    };
+}
+
 renderer::TreeOptions tree_of(int resolution) {
     renderer::TreeOptions tree;
     tree.max_resolution = resolution;

@@ -7,6 +7,7 @@
 
 #include "bench/shadow_scene.h"
 #include "gl/shader_source.h"
+#include "renderer/pyramid_shadow.h"
 #include "renderer/renderer.h"
 
 namespace cairn::bench {
@@ -25,6 +26,14 @@ struct ShadowRun {
                                                                      const gl::ShaderSource& shaders);
 /// Marches a frame, whatever was shown before.
 [[nodiscard]] ShadowRun shadow_frame(renderer::Renderer& renderer, const renderer::View& view);
+
+/// Frames of one scene, of which all but the rays is kept from one to the next.
+using ShadowFrames = std::function<ShadowRun(const renderer::View& view)>;
+
+/// Such frames with the rays of Forest et al. 2009 (renderer/pyramid_shadow.h).
+[[nodiscard]] ShadowFrames pyramid_frames(const ShadowScene& scene,
+                                          const renderer::PyramidShadowOptions& options,
+                                          const gl::ShaderSource& shaders);
 
 /// A tree of exactly so many voxels a side: 8, or 16 and more, a power of two.
 [[nodiscard]] renderer::TreeOptions tree_of(int resolution);
