@@ -170,7 +170,8 @@ double behind(double transmittance, double coverage) {
 
 /// What a ray sees of the surface at a point, from the four voxel centres of the tetrahedron around it;
 /// outside the root cube there is nothing.
-dvec3 visible_normal(const DenseVoxels& voxels, const dvec3& point, const dvec3& direction) {
+dvec3 visible_normal(const DenseVoxels& voxels, const ivec3& own, const dvec3& point,
+                     const dvec3& direction) {
     const dvec3 p = point - 0.5;
     const ivec3 low = ivec3(glm::floor(p));
     const dvec3 f = p - dvec3(low);
@@ -181,8 +182,9 @@ dvec3 visible_normal(const DenseVoxels& voxels, const dvec3& point, const dvec3&
     dvec3 all(0.0);
     double spread = 0.0;
     for (int i = 0; i <= 3; ++i) {
-        const double weight =
+        double weight =
             (i == 0 ? 1.0 : f[axes[std::size_t(i - 1)]]) - (i == 3 ? 0.0 : f[axes[std::size_t(i)]]);
+        if (glm::all(glm::equal(corner, own))) weight += 0.125;
         const bool inside = glm::all(glm::greaterThanEqual(corner, ivec3(0))) &&
                             glm::all(glm::lessThan(corner, ivec3(voxels.side)));
         const TwoNormals n = inside ? voxels.normals[voxels.index(corner)] : TwoNormals{};
@@ -213,7 +215,7 @@ Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direct
         const double left = behind(hit.transmittance, coverage);
         const double weight = hit.transmittance - left;
         const double middle = 0.5 * (t_in + t_out);
-        hit.normal += weight * visible_normal(voxels, eye + direction * middle, direction);
+        hit.normal += weight * visible_normal(voxels, v, eye + direction * middle, direction);
         if (weight > hit.best_weight) {
             hit.best_weight = weight;
             hit.depth = middle;

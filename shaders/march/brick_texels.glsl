@@ -17,7 +17,7 @@ float coverage_of(Sample s) {
 
 // The texels around a sample's middle that a filtered fetch mixes. Of the eight whose centres are the corners of a cube, the
 // four of the tetrahedron along its diagonal that holds the middle: as smooth as a trilinear fetch, for half the fetches
-// (tetrahedral interpolation: Kasson et al. 1995). The one of the voxel itself is always among them.
+// (tetrahedral interpolation: Kasson et al. 1995). The one of the voxel itself is among them.
 struct Corners {
     ivec3 low;
     ivec3 next;
@@ -40,6 +40,9 @@ Corners corners_around(Sample s) {
     c.next = c.low + up;
     c.far = c.low + 1 - left_out;
     c.weights = vec4(1.0 - most, most - other, other - least, least);
+    // That of the voxel itself, the only one that is surely occupied, must not vanish. The sum need not be 1.
+    const ivec3 own = s.texel + 1 + s.voxel - c.low;
+    c.weights += 0.125 * vec4(equal(ivec4(own.x + own.y + own.z), ivec4(0, 1, 2, 3)));
     return c;
 }
 
