@@ -17,8 +17,8 @@ GLuint bound(GLenum unit, GLenum kind) {
     return GLuint(id);
 }
 
-constexpr std::uint32_t no_normal = 512U | 512U << 10U | 512U << 20U;
-constexpr std::uint32_t upwards = 512U | 1023U << 10U | 512U << 20U;
+constexpr std::uint32_t no_normal = 0;  // shaders/pool/brick_normals.glsl
+constexpr std::uint32_t upwards = 256U | 511U << 9U;
 
 }  // namespace
 

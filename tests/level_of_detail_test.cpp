@@ -43,6 +43,17 @@ Change change_between(const Image& a, const Image& b) {
     return change;
 }
 
+std::size_t pixels_that_differ(const Image& a, const Image& b, int limit) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+        bool differs = false;
+        for (std::size_t c = i; c < i + 4; ++c)
+            differs = differs || std::abs(int(a.rgba[c]) - int(b.rgba[c])) > limit;
+        count += differs ? 1 : 0;
+    }
+    return count;
+}
+
 Renderer make_renderer(const scenes::Scene& scene, TreeOptions options, bool mips = true) {
     options.mips = mips;
     return Renderer(scene, scenes::take_snapshot(scene), options);
@@ -152,8 +163,10 @@ TEST_P(BlendedShapes, NoVoxelIsNarrowerThanThePixelMeansTheFinestAlone) {
     const Image blended = renderer.render(view);
     view.level_of_detail = LevelOfDetail::nearest;
     const Image nearest = renderer.render(view);
-    // The normals of the voxels are turned to the viewer one by one, or together: that shows at silhouettes.
-    EXPECT_LE(change_between(blended, nearest).largest, 12) << change_between(blended, nearest).where;
+    // Blended voxels that look away from the viewer count as silhouettes up to a wider angle: that shows at
+    // some of them.
+    EXPECT_LE(pixels_that_differ(blended, nearest, 2), blended.rgba.size() / 4 / 200)
+        << change_between(blended, nearest).where;
     for (std::size_t i = 3; i < blended.rgba.size(); i += 4)
         ASSERT_EQ(blended.rgba[i], nearest.rgba[i]) << "opacity of pixel " << i / 4;
 }

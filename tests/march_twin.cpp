@@ -1,6 +1,7 @@
 #include "tests/march_twin.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -19,6 +20,8 @@ using glm::ivec3;
 struct Gathered {
     bool fine[4][4][4] = {};
     dvec3 normal{0.0};
+    glm::dmat3 moments{0.0};
+    double weight = 0.0;
 };
 
 double coverage_of(const Gathered& g) {
@@ -39,8 +42,48 @@ double coverage_of(const Gathered& g) {
     return std::round(most / 16.0 * 255.0) / 255.0;  // R8
 }
 
-dvec3 rounded_normal(const dvec3& n) {
-    return glm::round((n * 0.5 + 0.5) * 1023.0) / 1023.0 * 2.0 - 1.0;  // RGB10_A2
+/// By the octahedral map, in whole steps.
+dvec3 rounded_normal(const dvec3& n, double steps) {
+    const glm::dvec2 flat = glm::dvec2(n) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+    const auto folded = [](const glm::dvec2& e) {
+        return (1.0 - glm::abs(glm::dvec2(e.y, e.x))) *
+               glm::dvec2(e.x < 0.0 ? -1.0 : 1.0, e.y < 0.0 ? -1.0 : 1.0);
+    };
+    const glm::dvec2 e = glm::round((n.z < 0.0 ? folded(flat) : flat) * steps) / steps;
+    const double z = 1.0 - std::abs(e.x) - std::abs(e.y);
+    return glm::normalize(dvec3(z < 0.0 ? folded(e) : e, z));
+}
+
+/// The direction in which normals spread most: by power iteration as the shader does it, since where several
+/// are as good its choice is the definition.
+dvec3 main_direction(const glm::dmat3& covariance) {
+    int most = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        if (covariance[axis][axis] > covariance[most][most]) most = axis;
+    dvec3 u = covariance[most];
+    for (int i = 0; i < 8; ++i)
+        u = covariance * (u / std::max(glm::length(u), 1e-12));
+    return u / std::max(glm::length(u), 1e-12);
+}
+
+/// Two that have the mean of all and lie where they spread most.
+TwoNormals two_normals(const Gathered& g) {
+    if (glm::length(g.normal) + glm::length(g.moments[0]) + glm::length(g.moments[1]) == 0.0) return {};
+    const dvec3 mean = g.normal / g.weight;
+    const dvec3 u = main_direction(g.moments / g.weight - glm::outerProduct(mean, mean));
+    const double along = glm::dot(mean, u);
+    const double half = std::sqrt(std::max(along * along + 1.0 - glm::dot(mean, mean), 0.0));
+    TwoNormals two{true, mean, mean, 0.0};
+    const double share = std::min(half - along, half + along) / std::max(2.0 * half, 1e-6);
+    if (half >= 0.12 && 6.0 * share >= 0.5) {
+        two.first = mean + (half - along) * u;
+        two.second = mean - (half + along) * u;
+        if (along < 0.0) std::swap(two.first, two.second);
+        two.share = std::round(6.0 * share) / 6.0;
+    }
+    two.first = rounded_normal(two.first, 255.0);
+    two.second = rounded_normal(two.second, 31.0);
+    return two;
 }
 
 /// Adds one triangle's exact finer voxels to the voxels that hold them.
@@ -70,6 +113,8 @@ void gather(const voxelizer::Surface& one, int fine_level, int side, std::vector
                 Gathered& g = all[std::size_t(voxel)];
                 g.fine[f.x % 4][f.y % 4][f.z % 4] = true;
                 g.normal += normal;
+                g.moments += glm::outerProduct(normal, normal);
+                g.weight += 1.0;
             }
         }
     }
@@ -123,21 +168,43 @@ double behind(double transmittance, double coverage) {
     return std::max(transmittance - std::min(2.0 * coverage, 1.0), 0.0);
 }
 
-/// Trilinear fetch between voxel centres; outside the root cube there is nothing.
-dvec3 filtered_normal(const DenseVoxels& voxels, const dvec3& point) {
+/// What a ray sees of the surface at a point, from the four voxel centres of the tetrahedron around it;
+/// outside the root cube there is nothing.
+dvec3 visible_normal(const DenseVoxels& voxels, const ivec3& own, const dvec3& point,
+                     const dvec3& direction) {
     const dvec3 p = point - 0.5;
     const ivec3 low = ivec3(glm::floor(p));
     const dvec3 f = p - dvec3(low);
-    dvec3 sum(0.0);
-    for (int corner = 0; corner < 8; ++corner) {
-        const ivec3 d(corner & 1, corner >> 1 & 1, corner >> 2);
-        const ivec3 v = low + d;
-        const dvec3 w = glm::mix(1.0 - f, f, dvec3(d));
-        const bool inside =
-            glm::all(glm::greaterThanEqual(v, ivec3(0))) && glm::all(glm::lessThan(v, ivec3(voxels.side)));
-        sum += w.x * w.y * w.z * (inside ? voxels.normal[voxels.index(v)] : rounded_normal(dvec3(0.0)));
+    std::array<int, 3> axes = {0, 1, 2};
+    std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return f[a] > f[b]; });
+    ivec3 corner = low;
+    dvec3 seen(0.0);
+    dvec3 all(0.0);
+    double spread = 0.0;
+    for (int i = 0; i <= 3; ++i) {
+        double weight =
+            (i == 0 ? 1.0 : f[axes[std::size_t(i - 1)]]) - (i == 3 ? 0.0 : f[axes[std::size_t(i)]]);
+        if (glm::all(glm::equal(corner, own))) weight += 0.125;
+        const bool inside = glm::all(glm::greaterThanEqual(corner, ivec3(0))) &&
+                            glm::all(glm::lessThan(corner, ivec3(voxels.side)));
+        const TwoNormals n = inside ? voxels.normals[voxels.index(corner)] : TwoNormals{};
+        if (n.there) {
+            const dvec3 first = weight * (1.0 - n.share) * n.first;
+            const dvec3 second = weight * n.share * n.second;
+            seen += std::max(-glm::dot(n.first, direction), 0.0) * first +
+                    std::max(-glm::dot(n.second, direction), 0.0) * second;
+            all += first + second;
+            spread += weight * (1.0 - glm::dot(n.first, n.second));
+        }
+        if (i < 3) ++corner[axes[std::size_t(i)]];
     }
-    return sum;
+    if (glm::length(seen) > 0.01) return glm::normalize(seen);
+    if (glm::length(all) < 1e-3) return -direction;
+    const dvec3 normal = glm::normalize(all);
+    const double away = glm::dot(normal, direction);
+    const double bend =
+        std::clamp(std::sqrt(2.0 * spread / glm::length(all)), VOXEL_SILHOUETTE_BEND, SILHOUETTE_BEND);
+    return away > bend ? -normal : glm::normalize(normal - std::max(away, 0.0) * direction);
 }
 
 Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direction) {
@@ -148,8 +215,7 @@ Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direct
         const double left = behind(hit.transmittance, coverage);
         const double weight = hit.transmittance - left;
         const double middle = 0.5 * (t_in + t_out);
-        const dvec3 normal = filtered_normal(voxels, eye + direction * middle);
-        hit.normal += weight * normal / std::max(glm::length(normal), 1e-3);
+        hit.normal += weight * visible_normal(voxels, v, eye + direction * middle, direction);
         if (weight > hit.best_weight) {
             hit.best_weight = weight;
             hit.depth = middle;
@@ -202,9 +268,8 @@ DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution) {
     }
     for (const Gathered& g : all) {
         const double coverage = coverage_of(g);
-        const double length = glm::length(g.normal);
         out.coverage.push_back(coverage);
-        out.normal.push_back(rounded_normal(length > 0.0 ? g.normal / length * coverage : dvec3(0.0)));
+        out.normals.push_back(two_normals(g));
     }
     return out;
 }
@@ -227,12 +292,7 @@ renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& vie
             const double alpha = 1.0 - hit.transmittance;
             dvec3 color(view.background);
             if (alpha > 0.0) {
-                dvec3 normal = glm::length(hit.normal) < 1e-6 ? -direction : glm::normalize(hit.normal);
-                const double away = glm::dot(normal, direction);
-                if (away > SILHOUETTE_BEND)
-                    normal = -normal;
-                else if (away > 0.0)
-                    normal = glm::normalize(normal - away * direction);
+                const dvec3 normal = glm::length(hit.normal) < 1e-6 ? -direction : glm::normalize(hit.normal);
                 const dvec3 point = eye + direction * hit.depth;
                 auto to_light = [&](const dvec3& from) {
                     return view.light.positional ? glm::normalize(place(view.light.position) - from)

@@ -13,12 +13,20 @@
 /// checks.
 namespace cairn::test {
 
+/// The unit normals that stand for all those in a voxel, with the bits that the pool's texels keep of them.
+struct TwoNormals {
+    bool there = false;
+    glm::dvec3 first{0.0};
+    glm::dvec3 second{0.0};
+    double share = 0.0;  ///< of the second
+};
+
 /// What bricks hold, for every voxel of the root cube, with the bits that the pool's texels keep of it.
 struct DenseVoxels {
     voxelizer::Grid grid;
     int side = 0;
-    std::vector<double> coverage;    ///< [0, 1]
-    std::vector<glm::dvec3> normal;  ///< mean normal times coverage
+    std::vector<double> coverage;  ///< [0, 1]
+    std::vector<TwoNormals> normals;
 
     [[nodiscard]] std::size_t index(const glm::ivec3& v) const {
         return (std::size_t(v.z) * std::size_t(side) + std::size_t(v.y)) * std::size_t(side) +

@@ -1,5 +1,7 @@
 #include "tests/produced_brick.h"
 
+#include <cmath>
+
 #include "renderer/produce/tile_lists.h"
 #include "shaders/interop/bindings.h"
 
@@ -66,6 +68,13 @@ voxelizer::BitGrid bits_where(int low, int side, const Occupied& occupied) {
     return bits;
 }
 
+glm::vec3 from_octahedral(const glm::vec2& e) {
+    const float z = 1.0F - std::abs(e.x) - std::abs(e.y);
+    const glm::vec2 folded =
+        (1.0F - glm::abs(glm::vec2(e.y, e.x))) * glm::vec2(e.x < 0 ? -1 : 1, e.y < 0 ? -1 : 1);
+    return glm::normalize(glm::vec3(z < 0.0F ? folded : e, z));
+}
+
 }  // namespace
 
 glm::ivec4 ProducedBrick::color_at(const glm::ivec3& place) const {
@@ -75,7 +84,17 @@ glm::ivec4 ProducedBrick::color_at(const glm::ivec3& place) const {
 
 glm::vec3 ProducedBrick::normal_at(const glm::ivec3& place) const {
     const std::uint32_t texel = normal[index(place)];
-    return glm::vec3(texel & 1023U, texel >> 10U & 1023U, texel >> 20U & 1023U) / 1023.0F * 2.0F - 1.0F;
+    if (texel == 0) return glm::vec3(0.0F);
+    return from_octahedral((glm::vec2(texel & 511U, texel >> 9U & 511U) - 256.0F) / 255.0F);
+}
+
+glm::vec3 ProducedBrick::second_normal_at(const glm::ivec3& place) const {
+    const std::uint32_t texel = normal[index(place)];
+    return from_octahedral((glm::vec2(texel >> 18U & 63U, texel >> 24U & 63U) - 31.0F) / 31.0F);
+}
+
+float ProducedBrick::second_share_at(const glm::ivec3& place) const {
+    return float(normal[index(place)] >> 30U) / 6.0F;
 }
 
 bool ProducedBrick::occupied(const glm::ivec3& place) const {

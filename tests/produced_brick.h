@@ -18,7 +18,7 @@ namespace cairn::test {
 struct ProducedBrick {
     int m = 0;
     std::vector<std::uint32_t> color;   ///< RGBA8; of a pool without colour the coverage alone
-    std::vector<std::uint32_t> normal;  ///< 10, 10, 10, 2 bits
+    std::vector<std::uint32_t> normal;  ///< as shaders/pool/brick_normals.glsl packs them
     std::vector<std::uint64_t> masks;   ///< the summary, then the blocks
 
     [[nodiscard]] std::size_t index(const glm::ivec3& place) const {
@@ -27,8 +27,10 @@ struct ProducedBrick {
     }
     /// Red, green, blue (square roots, times the coverage) and coverage, 0 to 255.
     [[nodiscard]] glm::ivec4 color_at(const glm::ivec3& place) const;
-    /// Normal times coverage.
+    /// The first of the voxel's two normals; 0: there is none.
     [[nodiscard]] glm::vec3 normal_at(const glm::ivec3& place) const;
+    [[nodiscard]] glm::vec3 second_normal_at(const glm::ivec3& place) const;
+    [[nodiscard]] float second_share_at(const glm::ivec3& place) const;
     [[nodiscard]] bool occupied(const glm::ivec3& place) const;  ///< by the masks; not in the border
     [[nodiscard]] bool summary_at(const glm::ivec3& block) const;
     [[nodiscard]] bool operator==(const ProducedBrick&) const = default;

@@ -196,10 +196,32 @@ TEST_F(ProducedColor, NormalsAreTheTrianglesOwnUnlessVerticesHaveTheirs) {
     EXPECT_LT(glm::length(sheets.brick().normal_at({3, 5, 4})), 0.01F) << "an empty voxel has no normal";
 }
 
-TEST_F(ProducedColor, NormalIsWeightedWithTheCoverage) {
+TEST_F(ProducedColor, TwoFacesInAVoxelKeepTheirNormals) {
+    constexpr std::uint32_t along_x = 32767;
+    constexpr std::uint32_t along_y = 32767U << 16U;
+    constexpr std::uint32_t against_y = 32769U << 16U;  // -32767
+    for (const auto& [other, normal] :
+         {std::pair{along_x, glm::vec3(1, 0, 0)}, {against_y, glm::vec3(0, -1, 0)}}) {
+        Sheets sheets;
+        sheets.add(4.6, 3.05, 3.7, 4.05, 4.95, red);
+        sheets.add(4.6, 3.8, 3.95, 4.05, 4.95, red);
+        sheets.set_attributes([&](interop::SurfaceAttributes& attributes, double x) {
+            attributes.normal = x < 3.75 ? along_y : other;
+        });
+        const ProducedBrick brick = sheets.brick();
+        const glm::ivec3 voxel(3, 4, 4);
+        EXPECT_LT(glm::distance(brick.normal_at(voxel), glm::vec3(0, 1, 0)), 0.02F);
+        EXPECT_LT(glm::distance(brick.second_normal_at(voxel), normal), 0.08F);
+        EXPECT_NEAR(brick.second_share_at(voxel), 0.25F, 0.1F);  // one column of finer voxels against three
+    }
+}
+
+TEST_F(ProducedColor, NormalsThatHardlyDifferAreOne) {
     Sheets sheets;
-    sheets.add(4.6, 0.0, 3.375, 0.0, 8.0, red);
-    EXPECT_LT(glm::distance(sheets.brick().normal_at({3, 4, 4}), glm::vec3(0.0F, 0.5F, 0.0F)), 0.01F);
+    sheets.add(4.6, 0.0, 8.0, 0.0, 8.0, red);
+    const ProducedBrick brick = sheets.brick();
+    EXPECT_EQ(brick.second_share_at({3, 4, 4}), 0.0F);
+    EXPECT_LT(glm::distance(brick.normal_at({3, 4, 4}), glm::vec3(0.0F, 1.0F, 0.0F)), 0.005F);
 }
 
 TEST_F(ProducedColor, AlphaMaskCutsSurfaceAway) {

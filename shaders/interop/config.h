@@ -122,8 +122,10 @@
 #define WINDOW_EMPTY 4294967295u    // there is nothing in it
 #define WINDOW_MISSING 2147483648u  // plus the entry of its nearest ancestor, which must be subdivided
 
-// A mean normal that looks away from the viewer by less than this (cosine) belongs to a silhouette, not to a back side.
+// A normal that looks away from the viewer by less than this (cosine) belongs to a silhouette, not to a back side. A voxel
+// tells by its two normals how far its surface bends; it is taken for flat when they tell less than the second number.
 #define SILHOUETTE_BEND 0.35
+#define VOXEL_SILHOUETTE_BEND 0.1
 
 // How a ray finds its next tile; in this order in renderer/march/traversal.h.
 #define TRAVERSAL_RESTART 0

@@ -20,6 +20,7 @@
 #define RAYS_WIDEN 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
+#include "march/visible_normal.glsl"
 #if SHOW_TREE
 #include "march/show_tree.glsl"
 #endif
@@ -33,26 +34,22 @@ bool visit(inout Ray ray, Sample s) {
 #endif
     const float left = behind(state.color.a, coverage_of(s), s.share);
     const float weight = state.color.a - left;
+    const Corners around = corners_around(s);
     vec3 color = view.surface_color.rgb;
 #if HAS_COLOR
-    const vec4 mean = filtered(brick_color, s);
+    const vec4 mean = filtered(brick_color, around);
     color = mean.rgb / max(mean.a, 1.0 / 512.0);
     color *= color;  // stored as square roots, for the eye's sake
 #endif
-    const vec3 normal = filtered(brick_normal, s).xyz * 2.0 - 1.0;
+    const Faces faces = filtered_faces(around, ray.direction);
 #if SHOW_TREE
 #if WINDOWS
     first_level = windows.of[ray.window].shift_level.w;
 #endif
-    color = tree_color(s, color, normal);
+    color = tree_color(s, color, faces.all);
 #endif
     state.color.rgb += weight * color;
-#if BLENDED
-    // Each voxel's own: the mean of two mips' normals would turn over all at once while their shares change.
-    state.normal_depth.xyz += weight * facing_normal(normal, ray.direction);
-#else
-    state.normal_depth.xyz += weight * normal / max(length(normal), 1e-3);
-#endif
+    state.normal_depth.xyz += weight * visible_normal(faces, ray.direction);
     if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
         state.voxel_t_weight.w = floatBitsToUint(weight);
         state.normal_depth.w = s.t;

@@ -3,6 +3,7 @@
 // defines: TREE_N=2 BRICK_M=8
 // defines: TREE_N=3 BRICK_M=27
 #include "produce/fractal.glsl"
+#include "pool/brick_normals.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -56,8 +57,7 @@ void main() {
         if (occupied(neighbours, near)) away -= offset;
     }
     const float size = length(vec3(away));
-    const vec3 normal = size > 0.0 ? vec3(away) / size : vec3(0.0);
     const ivec3 texel = tiles[tile].slot_texel.xyz + place;
     imageStore(brick_color, texel, vec4(covered));
-    imageStore(brick_normal, texel, vec4(normal * covered * 0.5 + 0.5, 1.0));
+    imageStore(brick_normal, texel, covered * size > 0.0 ? pack_normal(vec3(away)) : vec4(0.0));
 }

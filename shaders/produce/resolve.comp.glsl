@@ -4,6 +4,7 @@
 // defines: BRICK_M=8 BRICK_MIPS=0 HAS_COLOR=0
 // defines: BRICK_M=27 HAS_COLOR=1
 #include "produce/scratch.glsl"
+#include "produce/two_normals.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -28,6 +29,20 @@ float coverage(uvec2 mask) {
     return float(most) / 16.0;
 }
 
+// Mean of what was summed from word `first` on.
+vec3 mean_of(uint first, float weight) {
+    return vec3(int(scratch[first]), int(scratch[first + 1u]), int(scratch[first + 2u])) / (weight * NORMAL_UNIT);
+}
+
+vec4 packed_normals(uint sums, float weight) {
+    const vec3 mean = mean_of(sums + SUM_NORMAL, weight);
+    const vec3 x = mean_of(sums + SUM_MOMENTS, weight);  // xx, xy, xz
+    const vec3 y = mean_of(sums + SUM_MOMENTS + 2u, weight);  // xz, yy, yz
+    const float zz = max(1.0 - x.x - y.y, 0.0);
+    const Normals found = two_normals(mean, mat3(x, vec3(x.y, y.y, y.z), vec3(x.z, y.z, zz)));
+    return length(found.first) > 1e-3 ? pack_normals(found) : vec4(0.0);
+}
+
 void main() {
     const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= tile_count * uint(VOXELS)) return;
@@ -40,17 +55,14 @@ void main() {
     const uvec2 mask = uvec2(scratch[2u * i], scratch[2u * i + 1u]);
 
     float covered = 0.0;
-    vec3 normal = vec3(0.0);
+    vec4 normals = vec4(0.0);
     vec3 color = vec3(0.0);
     if ((mask.x | mask.y) != 0u) {
         const uint sums = sums_offset + i * uint(SUM_WORDS);
         covered = coverage(mask);
-        const vec3 normals = vec3(int(scratch[sums + SUM_NORMAL]), int(scratch[sums + SUM_NORMAL + 1u]),
-                                  int(scratch[sums + SUM_NORMAL + 2u]));
-        const float size = length(normals);
-        if (size > 0.0) normal = normals / size;
-#if HAS_COLOR
         const float weight = float(min(scratch[sums + SUM_WEIGHT], WEIGHT_LIMIT));
+        normals = packed_normals(sums, weight);
+#if HAS_COLOR
         const vec3 colors = vec3(scratch[sums + SUM_COLOR], scratch[sums + SUM_COLOR + 1u],
                                  scratch[sums + SUM_COLOR + 2u]);
         color = sqrt(clamp(colors / (weight * COLOR_UNIT), 0.0, 1.0));
@@ -60,11 +72,11 @@ void main() {
         for (uint w = 0u; w < uint(SUM_WORDS); ++w) scratch[sums + w] = 0u;
     }
     const ivec3 texel = slot_texel(tiles[tile].slot.x, mip) + place;
-    // Both are weighted with the coverage, so that a filtered fetch does not mix in what is empty.
+    // Colours are weighted with the coverage, so that a filtered fetch does not mix in what is empty.
 #if HAS_COLOR
     imageStore(brick_color, texel, vec4(color * covered, covered));
 #else
     imageStore(brick_color, texel, vec4(covered));
 #endif
-    imageStore(brick_normal, texel, vec4(normal * covered * 0.5 + 0.5, 1.0));
+    imageStore(brick_normal, texel, normals);
 }

@@ -18,11 +18,12 @@
 //     sums       SUM_WORDS a voxel, from word `sums_offset` on
 #define SUM_WEIGHT 0               // finer voxels, counted for each triangle
 #define SUM_NORMAL 1               // 3 words: weighted normals, NORMAL_UNIT = 1
-#define SUM_COLOR 4                // 3 words: weighted linear colours, COLOR_UNIT = 1
+#define SUM_MOMENTS 4              // 5 words: products of the normals' components, xx, xy, xz, yy, yz, weighted alike
+#define SUM_COLOR 9                // 3 words: weighted linear colours, COLOR_UNIT = 1
 #if HAS_COLOR
-#define SUM_WORDS 7
+#define SUM_WORDS 12
 #else
-#define SUM_WORDS 4
+#define SUM_WORDS 9
 #endif
 #define NORMAL_UNIT 511.0
 #define COLOR_UNIT 1023.0

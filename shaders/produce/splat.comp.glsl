@@ -118,10 +118,19 @@ void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
     const float weight = float(count);
     const SurfacePoint p = point_under(s, (vec3(v) + middle_of(mask, weight)) * float(4 * side_of(fine)));
     // Two's complement: negative sums wrap and come out right.
-    const ivec3 n = ivec3(round(normal_at(p, s.normal) * weight * NORMAL_UNIT));
+    const vec3 normal = normal_at(p, s.normal);
+    const vec3 weighted = normal * (weight * NORMAL_UNIT);
+    const ivec3 n = ivec3(round(weighted));
     atomicAdd(scratch[sums + SUM_NORMAL], uint(n.x));
     atomicAdd(scratch[sums + SUM_NORMAL + 1], uint(n.y));
     atomicAdd(scratch[sums + SUM_NORMAL + 2], uint(n.z));
+    const ivec3 by_x = ivec3(round(weighted * normal.x));
+    const ivec2 by_y = ivec2(round(weighted.yz * normal.y));
+    atomicAdd(scratch[sums + SUM_MOMENTS], uint(by_x.x));
+    atomicAdd(scratch[sums + SUM_MOMENTS + 1], uint(by_x.y));
+    atomicAdd(scratch[sums + SUM_MOMENTS + 2], uint(by_x.z));
+    atomicAdd(scratch[sums + SUM_MOMENTS + 3], uint(by_y.x));
+    atomicAdd(scratch[sums + SUM_MOMENTS + 4], uint(by_y.y));
 #if HAS_COLOR
     const uvec3 c = uvec3(round(clamp(color_at(p, s.material), 0.0, 1.0) * weight * COLOR_UNIT));
     atomicAdd(scratch[sums + SUM_COLOR], c.x);

@@ -1,0 +1,47 @@
+// Which way faces what a ray sees of a voxel's surface.
+//
+// Of a voxel's two normals (pool/brick_normals.glsl) those count that face the viewer, by how much of the picture they
+// cover: what turns its back is hidden behind them. Where none faces the viewer, a sheet is seen from its back; or the
+// surface is seen edge on at a silhouette, and its mean looks away a little because it bends away in the voxel.
+#include "pool/brick_normals.glsl"
+
+struct Faces {
+    vec3 seen;  // normals that face the viewer, each times the part of the picture that it covers
+    vec3 all;
+    float spread;  // of 1 - cosine between the two normals of a texel
+};
+
+void add_faces(inout Faces faces, vec4 texel, float weight, vec3 direction) {
+    const Normals n = unpack_normals(texel);
+    const float there = has_normal(texel) ? weight : 0.0;
+    const vec3 first = there * (1.0 - n.share) * n.first;
+    const vec3 second = there * n.share * n.second;
+    faces.seen += max(-dot(n.first, direction), 0.0) * first + max(-dot(n.second, direction), 0.0) * second;
+    faces.all += first + second;
+    faces.spread += there * (1.0 - dot(n.first, n.second));
+}
+
+Faces filtered_faces(Corners c, vec3 direction) {
+    Faces faces = Faces(vec3(0.0), vec3(0.0), 0.0);
+    add_faces(faces, texelFetch(brick_normal, c.low, 0), c.weights.x, direction);
+    add_faces(faces, texelFetch(brick_normal, c.next, 0), c.weights.y, direction);
+    add_faces(faces, texelFetch(brick_normal, c.far, 0), c.weights.z, direction);
+    add_faces(faces, texelFetch(brick_normal, c.low + 1, 0), c.weights.w, direction);
+    return faces;
+}
+
+vec3 visible_normal(Faces faces, vec3 direction) {
+    const float seen = length(faces.seen);
+    if (seen > 0.01) return faces.seen / seen;
+    const float size = length(faces.all);
+    if (size < 1e-3) return -direction;
+    const vec3 normal = faces.all / size;
+    const float away = dot(normal, direction);
+#if BLENDED
+    const float bend = SILHOUETTE_BEND;  // two mips must not turn to opposite sides while their shares change
+#else
+    // So far are the two from each other, and the outermost ones about as far from the mean.
+    const float bend = clamp(sqrt(max(2.0 * faces.spread / size, 0.0)), VOXEL_SILHOUETTE_BEND, SILHOUETTE_BEND);
+#endif
+    return away > bend ? -normal : normalize(normal - max(away, 0.0) * direction);
+}

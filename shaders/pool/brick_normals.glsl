@@ -1,0 +1,42 @@
+// What a texel of brick_normal (10 + 10 + 10 + 2 bits) holds: two unit normals of the voxel's surface, by the octahedral map
+// (Cigolle et al. 2014), and the second one's share, at most a half.
+//     bits 0 to 17   the first: 9 + 9, from 1 on; 0: there is none
+//     bits 18 to 29  the second: 6 + 6
+//     bits 30 to 31  its share, in sixths
+struct Normals {
+    vec3 first;
+    vec3 second;
+    float share;
+};
+
+vec2 octahedral_place(vec3 n) {
+    const vec2 e = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    const vec2 folded = (1.0 - abs(e.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(e, vec2(0.0)));
+    return n.z < 0.0 ? folded : e;
+}
+
+vec3 from_octahedral_place(vec2 e) {
+    const float z = 1.0 - abs(e.x) - abs(e.y);
+    return normalize(vec3(e - max(-z, 0.0) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(e, vec2(0.0))), z));
+}
+
+vec4 pack_normals(Normals n) {
+    const uvec2 first = uvec2(round(octahedral_place(n.first) * 255.0 + 256.0));
+    const uvec2 second = uvec2(round(octahedral_place(n.second) * 31.0 + 31.0));
+    const uint bits = first.x | first.y << 9 | second.x << 18 | second.y << 24;
+    return vec4(vec3(bits & 1023u, bits >> 10 & 1023u, bits >> 20) / 1023.0, round(6.0 * n.share) / 3.0);
+}
+
+vec4 pack_normal(vec3 n) { return pack_normals(Normals(n, n, 0.0)); }
+
+bool has_normal(vec4 texel) { return texel.x + texel.y > 0.0; }
+
+Normals unpack_normals(vec4 texel) {
+    const uvec3 t = uvec3(texel.xyz * 1023.0 + 0.5);
+    const uint bits = t.x | t.y << 10 | t.z << 20;
+    Normals n;
+    n.first = from_octahedral_place((vec2(bits & 511u, bits >> 9 & 511u) - 256.0) / 255.0);
+    n.second = from_octahedral_place((vec2(bits >> 18 & 63u, bits >> 24) - 31.0) / 31.0);
+    n.share = 0.5 * texel.w;
+    return n;
+}
