@@ -98,6 +98,10 @@ struct View {
     /// Rays a pixel to the light, [1, 512]: one goes to its middle, more to samples of all of it, which are
     /// stratified and the same in every frame. Volumes take one.
     int shadow_rays = 1;
+    /// The shadow rays are cones, each as wide as its share of the light: they read coarser voxels the
+    /// further they go, and one takes what several rays would find on average. One cone sees all of the
+    /// light.
+    bool shadow_cones = false;
     Show show = Show::surface;
     /// The camera and the light are told from this tile's low corner, in units of its side, instead of in the
     /// world: so a view is exact however deep it is.
