@@ -72,6 +72,9 @@ void add_light_options(CLI::App& verb, ShadowOptions& options) {
             "extent)",
             default_soft_rays),
         [&](const std::string& text) { options.rays = parse_int("--rays", text, 1, MAX_SHADOW_RAYS); });
+    verb.add_flag(
+        "--cones", options.cones,
+        "those rays are cones: each sees its share of the light\nthrough coarser voxels the further it goes");
 }
 
 void add_map_options(CLI::App& verb, ShadowOptions& options) {
@@ -129,6 +132,8 @@ void check(const ShadowOptions& options) {
     if (is_map && !options.rectangle)
         refuse("--method", "soft shadow maps need a rectangle", "add --light and --light-size");
     if (is_map && options.rays) refuse("--rays", "soft shadow maps send none", "leave it out");
+    if (options.cones && *options.method != ShadowMethod::voxel)
+        refuse("--cones", "only voxels are seen by cones", "leave it out, or choose --method voxel");
     if (is_map && options.occluders.empty() && options.receivers.empty())
         refuse("--method", "soft shadow maps know no self-shadowing", "name --occluders or --receivers");
     if (options.difference && !options.compare)
@@ -228,7 +233,8 @@ ShadowTask make_shadow_task(const ShadowOptions& options) {
     task.view.light = light_of(options, task.view.light, task.shown.bounds);
     const bool extended = renderer::has_extent(task.view.light);
     task.view.shadow_rays = options.rays.value_or(extended ? default_soft_rays : 1);
-    task.is_soft = extended && task.view.shadow_rays > 1;
+    task.view.shadow_cones = options.cones;
+    task.is_soft = extended && (task.view.shadow_rays > 1 || options.cones);
     return task;
 }
 

@@ -188,6 +188,8 @@ void add_view_options(CLI::App& verb, ViewOptions& options) {
                       fmt::format("shadows of that light; soft ones take {} rays a pixel\n(default: hard)",
                                   default_soft_rays),
                       [&options](const std::string& text) { set_shadow(options.view, text); });
+    verb.add_flag("--cones", options.view.shadow_cones,
+                  "the rays of soft shadows are cones, which read coarser\nvoxels the further they go");
     add_tree_options(verb, options);
     add_parsed_option(
         verb, "--level-of-detail", "nearest|blended",
@@ -250,6 +252,7 @@ std::string render_command(const SceneOptions& scene, const ViewOptions& options
     if (options.light) add("--light", *options.light);
     if (view.shadow == renderer::Shadow::none) add("--shadow", "none");
     if (view.shadow == renderer::Shadow::hard && view.shadow_rays > 1) add("--shadow", "soft");
+    if (view.shadow_cones) line += " --cones";
     if (view.pixel_error != renderer::View{}.pixel_error)
         add("--pixel-error", fmt::format("{}", view.pixel_error));
     if (view.level_of_detail == renderer::LevelOfDetail::blended) add("--level-of-detail", "blended");

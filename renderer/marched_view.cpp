@@ -17,7 +17,8 @@ Place place_of(const View& view, const glm::dvec3& point, const voxelizer::Grid&
 }
 
 bool is_soft(const View& view) {
-    return view.shadow == Shadow::hard && view.shadow_rays > 1 && has_extent(view.light);
+    return view.shadow == Shadow::hard && (view.shadow_rays > 1 || view.shadow_cones) &&
+           has_extent(view.light);
 }
 
 namespace {
@@ -101,7 +102,9 @@ void set_area_light(interop::MarchView& out, const View& view, double voxel_size
     out.light_u = glm::vec4(glm::vec3(light.half_u / voxel_size), float(light.radius / voxel_size));
     out.light_v = glm::vec4(glm::vec3(light.half_v / voxel_size), float(lost));
     const LightShape shape = light.positional ? light.shape : LightShape::sphere;
-    out.area_light = glm::ivec4(is_soft(view) ? view.shadow_rays : 1, int(shape), 0, 0);
+    const bool soft = is_soft(view);
+    out.area_light =
+        glm::ivec4(soft ? view.shadow_rays : 1, int(shape), soft ? 1 : 0, soft && view.shadow_cones ? 1 : 0);
 }
 
 /// What of a view is told in voxels: of the finest level, from the root cube's low corner; or of the coarsest

@@ -90,6 +90,8 @@ Image Renderer::march(const View& view, Rows rows, int shown, const std::functio
             "ask for rows that the picture has");
     }
     Parts& parts = *parts_;
+    if (view.shadow_cones && !parts.marcher.marches_surfaces())
+        throw Error(Fault::usage, "view", "shadow cones through a volume", "send it shadow rays");
     if (!(view == parts.ahead.view)) parts.ahead = {view, parts.round, 0, false};
     const bool is_blended = parts.blends(view);
     const auto start = Clock::now();
@@ -137,7 +139,7 @@ Image Renderer::render(const View& view, const std::function<void(double)>& prog
 }
 
 LightShares Renderer::light_shares(const View& view, const std::function<void(double)>& progress) {
-    if (!parts_->marcher.shows_light()) {
+    if (!parts_->marcher.marches_surfaces()) {
         throw Error(Fault::usage, "view", "the light at a volume is not that of one place",
                     "render its picture");
     }

@@ -70,6 +70,10 @@ struct View {
     /// rises r a unit of way, 4 / r voxels from the foot of a thin sheet. A closed box leaks 2 at most while
     /// the light stands 30 degrees high. A mesh that is not voxelized is shadowed from contact on.
     int shadow_rays = 1;
+    /// The shadow rays are cones, each as wide as its share of the light: they read coarser voxels the
+    /// further they go, and one takes what several rays would find on average. One cone sees all of the
+    /// light. Not through volumes.
+    bool shadow_cones = false;
     Show show = Show::surface;
     /// The camera and the light are told from this tile's low corner, in units of its side, instead of in the
     /// world: so a view is exact however deep it is.

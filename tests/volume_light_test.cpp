@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/error.h"
 #include "renderer/produce/dense_field.h"
 #include "renderer/produce/made_fields.h"
 #include "renderer/renderer.h"
@@ -281,6 +282,8 @@ TEST_F(VolumeLight, SoftShadowIsTheSameFromTinyPoolsAndWithinABudget) {
     EXPECT_EQ(image.rgba, expected.rgba);
     view.shadow_rays = 1;
     EXPECT_NE(roomy.render(view).rgba, expected.rgba);
+    view.shadow_cones = true;
+    EXPECT_THROW((void)roomy.render(view), Error);
 }
 
 }  // namespace

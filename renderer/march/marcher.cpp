@@ -111,15 +111,18 @@ const gl::Program& Marcher::primary_program(PassKind kind) {
 const gl::Program& Marcher::shadow_program(PassKind kind) {
     const int progressive = kind == PassKind::patient ? 0 : 1;
     const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
-    const int soft = shadow_rays_ > 1 ? 1 : 0;
+    const int soft = soft_shadows_ ? 1 : 0;
+    const int cones = shadow_cones_ ? 1 : 0;
     const int blended = blended_ ? 1 : 0;
-    gl::Program& program = shadow_[std::size_t(progressive + 2 * meshes + 4 * soft + 8 * blended)];
+    gl::Program& program =
+        shadow_[std::size_t(progressive + 2 * meshes + 4 * soft + 8 * blended + 16 * cones)];
     if (program.id() == 0) {
         gl::Defines defines = defines_;
         defines.emplace_back("BLENDED", std::to_string(blended));
         defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
         if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
         if (soft != 0) defines.emplace_back("SOFT_SHADOWS", "");
+        if (cones != 0) defines.emplace_back("SHADOW_CONES", "");
         program = gl::build_compute(shaders_, kind_.shadow, defines);
     }
     return program;
@@ -145,8 +148,12 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         capacity_ = pixels;
     }
     shadow_rays_ = view.area_light.x;
-    if (shadow_rays_ > 1 && shadow_sums_.size_bytes() < capacity_ * sizeof(glm::uvec2))
-        shadow_sums_ = gl::Buffer(capacity_ * sizeof(glm::uvec2), "sums of shadow rays");
+    soft_shadows_ = view.area_light.z != 0;
+    shadow_cones_ = view.area_light.w != 0;
+    const std::size_t sum_bytes =
+        capacity_ * (shadow_cones_ ? sizeof(interop::ShadowConeSum) : sizeof(interop::ShadowSum));
+    if (soft_shadows_ && shadow_sums_.size_bytes() < sum_bytes)
+        shadow_sums_ = gl::Buffer(sum_bytes, "sums of shadow rays");
     query_bits_offset_ = std::uint32_t(pool.slot_count());
     entry_count_ = tree.entry_count();
     const std::size_t usage_words = query_bits_offset_ + (3 * std::size_t(tree.entry_count()) + 31) / 32;
@@ -159,7 +166,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     }
     interop::MarchView marched = view;
     // They are told for one direction.
-    if (options_.block_starts && view.size_shadow.z != 0 && view.light.w == 0.0F && shadow_rays_ == 1) {
+    if (options_.block_starts && view.size_shadow.z != 0 && view.light.w == 0.0F && !soft_shadows_) {
         const ShadowEnds ends = shadow_ends(view, tree, is_blended);
         shadow_ends_.write(0, ends.ends.data(), ends.ends.size() * sizeof(float));
         marched.shadow_across = ends.across;
@@ -218,7 +225,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     lists_.bind_storage(SSBO_LISTS);
     queries_.bind_storage(SSBO_QUERIES);
     if (!tile_blocks_) usage_.bind_storage(SSBO_USAGE);
-    if (shadow_rays_ > 1) shadow_sums_.bind_storage(SSBO_SHADOW_SUMS);
+    if (soft_shadows_) shadow_sums_.bind_storage(SSBO_SHADOW_SUMS);
     image_.bind_storage(SSBO_IMAGE);
     starts_.bind_storage(SSBO_BLOCK_STARTS);
     glBindTextureUnit(TEXTURE_SHADOW_ENDS, shadow_ends_texture_.id());

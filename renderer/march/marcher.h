@@ -105,7 +105,7 @@ public:
     [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool,
                                       PassKind kind = PassKind::patient);
 
-    [[nodiscard]] bool shows_light() const { return kind_.shows_light; }
+    [[nodiscard]] bool marches_surfaces() const { return kind_.of_surfaces; }
 
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
 
@@ -137,7 +137,7 @@ private:
 
     std::array<gl::Program, 32>
         primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * meshes + 8 * proxy + 16 * BLENDED
-    std::array<gl::Program, 16> shadow_;  ///< PROGRESSIVE + 2 * meshes + 4 * soft + 8 * BLENDED
+    std::array<gl::Program, 32> shadow_;  ///< PROGRESSIVE + 2 * meshes + 4 * soft + 8 * BLENDED + 16 * cones
     gl::Buffer view_;
     gl::Buffer windows_;  ///< empty where the tree has none
     gl::Buffer shadow_ends_;
@@ -165,6 +165,8 @@ private:
     bool urgent_told_ = true;  // the last pass left queries by rank
     bool show_tree_ = false;
     int shadow_rays_ = 1;  // of a pixel
+    bool soft_shadows_ = false;
+    bool shadow_cones_ = false;
     bool blended_ = false;
     int pauses_ = 0;     // passes in a row in which rays only paused
     int list_side_ = 0;  // which half of the lists is read

@@ -116,7 +116,8 @@ struct MarchView {
     ivec4 size_shadow;     // xy: pixels of the picture; z: 1 = trace shadow rays; w: 1 = there are ShadowEnds
     vec4 light_u;          // area lights: half axis, from the light's middle; w: radius of a sphere
     vec4 light_v;          // the other half axis; w: 1 - cosine of a directional light's angle
-    ivec4 area_light;      // x: shadow rays a pixel, 1 = a hard shadow of the light's middle; y: LIGHT_*
+    ivec4 area_light;      // x: shadow rays a pixel; y: LIGHT_*; z: 1 = they go to samples of the light, 0 = one
+                           // to its middle; w: 1 = they are cones
     ivec4 band;            // x: first row, y: rows of the band that is marched; buffers hold the band alone; z: SHOW_*;
                            // w: a pixel of the background
 };
@@ -142,6 +143,19 @@ struct RayState {
     vec4 color;            // rgb: gathered, premultiplied; a: transmittance
     vec4 normal_depth;     // xyz: gathered normal; w: distance of the voxel that weighs most
     uvec4 voxel_t_weight;  // xy: packed voxel; z, w: bits of floats: distance; the greatest weight, or the light's visibility
+};
+
+// Shadow rays of a pixel to a light with an extent, while one of them waits.
+struct ShadowSum {
+    uint ray;              // the one that waits
+    float visible;         // sum over those before it
+};
+// Cones likewise, and what the one that waits has been covered by.
+struct ShadowConeSum {
+    uint ray;
+    float visible;
+    float front;
+    float back;
 };
 
 // A block of PIXEL_BLOCK_SIDE^2 pixels, and where its rays may meet anything.
@@ -197,6 +211,8 @@ static_assert(sizeof(MarchView) == 240, "GLSL sees another layout");
 static_assert(sizeof(MarchWindow) == 80, "GLSL sees another layout");
 static_assert(sizeof(VolumeView) == 16, "GLSL sees another layout");
 static_assert(sizeof(RayState) == 48, "GLSL sees another layout");
+static_assert(sizeof(ShadowSum) == 8, "GLSL sees another layout");
+static_assert(sizeof(ShadowConeSum) == 16, "GLSL sees another layout");
 static_assert(sizeof(MarchCounters) == 24, "GLSL sees another layout");
 static_assert(sizeof(BlockStart) == 12, "GLSL sees another layout");
 static_assert(sizeof(MeshView) == 128, "GLSL sees another layout");

@@ -7,6 +7,7 @@
 struct LightSample {
     vec3 direction;  // from the receiver, unit
     float reach;     // how far it is
+    float width;     // of its share of the light, at distance 1
 };
 
 // Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg.
@@ -50,7 +51,10 @@ float light_scale() {
 LightSample flat_sample(vec3 centre, vec3 point, vec2 p) {
     const vec3 way = centre + light_scale() * (p.x * view.light_u.xyz + p.y * view.light_v.xyz) - point;
     const float reach = length(way);
-    return LightSample(way / reach, reach);
+    const vec3 direction = way / reach;
+    const float square = view.area_light.y == LIGHT_RECTANGLE ? 4.0 : 3.14159265;
+    const float area = square * abs(dot(cross(light_scale() * view.light_u.xyz, light_scale() * view.light_v.xyz), direction));
+    return LightSample(direction, reach, sqrt(area / float(view.area_light.x)) / reach);
 }
 
 // In the cone that the light fills, even in solid angle: 1 - cosine grows with the square of the disk's radius.
@@ -66,17 +70,40 @@ LightSample cone_sample(vec4 light, vec3 point, vec2 disk) {
     const vec3 axis = way / far;
     const vec3 side = normalize(cross(axis, abs(axis.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
     const vec3 direction = normalize((1.0 - lost) * axis + across * (disk.x * side + disk.y * cross(axis, side)));
-    if (!positional) return LightSample(direction, 1e30);
+    const float width = sqrt(2.0 * 3.14159265 * widest / float(view.area_light.x));
+    if (!positional) return LightSample(direction, 1e30, width);
     // To the sphere's front: what is under its middle's height there is the other leg of a right triangle.
     const float off_axis = far * length(cross(axis, direction));
     const float under = radius * radius - off_axis * off_axis;
-    return LightSample(direction, max(dot(direction, way) - sqrt(max(under, 0.0)), 0.0));
+    return LightSample(direction, max(dot(direction, way) - sqrt(max(under, 0.0)), 0.0), width);
 }
 
-LightSample light_sample(vec3 point, ivec2 pixel, uint i) {
+LightSample sample_at(vec3 point, vec2 place) {
     const vec4 light = light_there();
-    const vec2 place = sample_place(pixel, i);
     if (view.area_light.y == LIGHT_RECTANGLE) return flat_sample(light.xyz, point, 2.0 * place - 1.0);
     if (view.area_light.y == LIGHT_DISK) return flat_sample(light.xyz, point, on_disk(place));
     return cone_sample(light, point, on_disk(place));
+}
+
+#ifdef SHADOW_CONES
+// Cones are wide themselves: so their middles keep off the light's edge by as much as all of them together keep the light's
+// second moment, and one alone goes to its middle. But no cone is wider than the root's voxels.
+vec2 cone_place(vec3 point, vec2 place) {
+#if WINDOWS
+    const float kept = 1.0;
+#else
+    const float root = float(ROOT_SIDE);
+    const float widest = root / float(BRICK_M) / max(distance(point, vec3(0.5 * root)), 1.0);
+    const float kept = min(widest / sample_at(point, vec2(0.5)).width, 1.0);
+#endif
+    return 0.5 + sqrt(1.0 - kept * kept / float(view.area_light.x)) * (place - 0.5);
+}
+#endif
+
+LightSample light_sample(vec3 point, ivec2 pixel, uint i) {
+#ifdef SHADOW_CONES
+    return sample_at(point, cone_place(point, sample_place(pixel, i)));
+#else
+    return sample_at(point, sample_place(pixel, i));
+#endif
 }

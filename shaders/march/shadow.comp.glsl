@@ -16,7 +16,15 @@
 // defines: TREE_N=2 BRICK_M=8 BRICK_MIPS=1 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 TRAVERSAL=1
 // defines: TREE_N=8 BRICK_M=8 BRICK_MIPS=3 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 TRAVERSAL=2 WITH_MESHES
 // defines: TREE_N=4 BRICK_M=8 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0 TRAVERSAL=0
+// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 TRAVERSAL=2 WITH_MESHES SOFT_SHADOWS SHADOW_CONES
+// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=1 TRAVERSAL=0 WINDOWS=1 SOFT_SHADOWS SHADOW_CONES
+// defines: TREE_N=3 BRICK_M=27 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 TRAVERSAL=1 SOFT_SHADOWS SHADOW_CONES
+// defines: TREE_N=8 BRICK_M=8 BRICK_MIPS=3 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=1 BLENDED=1 TRAVERSAL=2 SOFT_SHADOWS SHADOW_CONES
+#ifdef SHADOW_CONES
+#define RAYS_WIDEN 1
+#else
 #define RAYS_WIDEN 0
+#endif
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #if defined(WITH_MESHES) || defined(SOFT_SHADOWS)
@@ -27,7 +35,12 @@
 #endif
 #ifdef SOFT_SHADOWS
 #include "march/area_light.glsl"
-layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { uvec2 shadow_sums[]; };
+#ifdef SHADOW_CONES
+#include "march/shadow_cone.glsl"
+layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { ShadowConeSum shadow_sums[]; };
+#else
+layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { ShadowSum shadow_sums[]; };
+#endif
 #endif
 
 layout(local_size_x = 64) in;
@@ -49,17 +62,19 @@ float own_side;  // of the voxels that the receiver is shown with; of the finer 
 bool is_own(Ray ray, vec3 centre, float t, float side) {
     float height = own_height;
     float reach = own_reach;
+    float own = own_side;
 #if WINDOWS
     const float scale = ldexp(1.0, N_SHIFT * (seen_window - ray.window));  // of the receiver's voxels in the ray's
     height *= scale;
     reach *= scale;
+    own *= scale;
     const vec3 from_receiver = centre - ray.origin;
 #else
     const vec3 from_receiver = centre - receiver;
 #endif
-#if BLENDED
-    if (side > own_side && own_reach > 0.0) {  // what stands in, and the coarser of two mips
-        height *= side / own_side;
+#if BLENDED || RAYS_WIDEN
+    if (side > own && own_reach > 0.0) {  // what stands in, the coarser of two mips, and what a cone sees further on
+        height *= side / own;
         reach = max(reach, own_reach_of(side));
     }
 #elif PROGRESSIVE
@@ -71,7 +86,24 @@ bool is_own(Ray ray, vec3 centre, float t, float side) {
     return is_own(from_receiver, t, height, reach);
 }
 
+#ifdef SHADOW_CONES
+// Has the cone grown to voxels that are coarser than those of the receiver?
+bool is_coarse(Ray ray, float side) {
+#if WINDOWS
+    return side > 1.5 * ldexp(own_side, N_SHIFT * (seen_window - ray.window));
+#else
+    return side > 1.5 * own_side;
+#endif
+}
+#endif
+
 bool visit(inout Ray ray, Sample s) {
+#ifdef SHADOW_CONES
+    if (is_coarse(ray, s.side)) {
+        if (!is_own(ray, s.centre, s.t, s.side)) take_coarse(ray, s);
+        return visibility * left_by_sums() > OPAQUE_TRANSMITTANCE;
+    }
+#endif
 #if TELLS_SURFACE
     if (!meets_surface(ray, s)) return true;
 #endif
@@ -120,9 +152,11 @@ float voxel_side(float width) {
 }
 
 // A ray from the receiver to the light, or on from where it stood. False when it must wait: then it is stored.
-bool trace(vec3 to_light, float reach, float width, float side, bool starts, inout RayState state, inout int turns) {
+// @param widening  of its width, for each unit of its length
+bool trace(vec3 to_light, float reach, float width, float widening, float side, bool starts, inout RayState state,
+           inout int turns) {
     look_to_light(to_light, side);
-    Ray ray = make_ray(receiver, to_light, reach, width, 0.0);
+    Ray ray = make_ray(receiver, to_light, reach, width, widening);
 #if WINDOWS
     ray.window = seen_window;
 #endif
@@ -140,30 +174,58 @@ bool trace(vec3 to_light, float reach, float width, float side, bool starts, ino
         state.voxel_t_weight.w = floatBitsToUint(visibility);
         return false;
     }
+#ifdef SHADOW_CONES
+    visibility *= left_by_sums();
+#endif
     visibility = visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
     return true;
 }
 
 // How much of the light reaches the receiver. False when a ray must wait.
 #ifdef SOFT_SHADOWS
+#ifdef SHADOW_CONES
+// Brings the cone above the receiver's horizon: to the middle of what is left of it there. @return the share that is left.
+float rise_above_horizon(inout LightSample there) {
+    const float rise = dot(receiver_normal, there.direction);
+    const float risen = max(rise, 0.5 * (rise + 0.5 * there.width));
+    const float share = clamp(0.5 + rise / there.width, 0.0, 1.0);
+    there.direction = normalize(there.direction + (risen - rise) * receiver_normal);
+    there.width = min(there.width, 2.0 * risen);
+    return share;
+}
+#endif
+
 bool find_light(ivec2 pixel, uint index, float width, float side, bool starts, inout RayState state) {
     const uint rays_a_pixel = uint(min(view.area_light.x, MAX_SHADOW_RAYS));
     uint first = 0u;
     float sum = 0.0;
     if (!starts) {
-        const uvec2 stored = shadow_sums[index];
-        first = stored.x;
-        sum = uintBitsToFloat(stored.y);
+        first = shadow_sums[index].ray;
+        sum = shadow_sums[index].visible;
     }
     int turns = 0;
     for (uint i = first; i < rays_a_pixel; ++i) {
-        const LightSample there = light_sample(receiver, pixel, i);
-        if (dot(receiver_normal, there.direction) <= 0.0) continue;  // behind the receiver's horizon
-        if (!trace(there.direction, there.reach, width, side, starts || i != first, state, turns)) {
-            shadow_sums[index] = uvec2(i, floatBitsToUint(sum));
+        LightSample there = light_sample(receiver, pixel, i);
+#ifdef SHADOW_CONES
+        const bool resumes = !starts && i == first;
+        front_sum = resumes ? shadow_sums[index].front : 0.0;
+        back_sum = resumes ? shadow_sums[index].back : 0.0;
+        const float share = rise_above_horizon(there);
+        const float widening = sqrt(float(TREE_N)) * there.width;  // the nearest level, by ratio
+#else
+        const float share = dot(receiver_normal, there.direction) > 0.0 ? 1.0 : 0.0;
+        const float widening = 0.0;
+#endif
+        if (share <= 0.0) continue;  // behind the receiver's horizon
+        if (!trace(there.direction, there.reach, width, widening, side, starts || i != first, state, turns)) {
+#ifdef SHADOW_CONES
+            shadow_sums[index] = ShadowConeSum(i, sum, front_sum, back_sum);
+#else
+            shadow_sums[index] = ShadowSum(i, sum);
+#endif
             return false;
         }
-        sum += visibility;
+        sum += share * visibility;
     }
     visibility = sum / float(rays_a_pixel);
     return true;
@@ -174,7 +236,7 @@ bool find_light(ivec2 pixel, uint index, float width, float side, bool starts, i
     const vec3 to_light = direction_to_light(receiver);
     const float reach = light.w > 0.5 ? distance(light.xyz, receiver) : end_of_occluders(to_light);
     int turns = 0;
-    return trace(to_light, reach, width, side, starts, state, turns);
+    return trace(to_light, reach, width, 0.0, side, starts, state, turns);
 }
 #endif
 

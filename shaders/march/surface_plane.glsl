@@ -3,6 +3,7 @@
 // A voxel is up to a diagonal thicker than the surface in it. A ray that only grazes it meets nothing half of the time, but
 // finds its coverage all the same; so occluders were half a voxel too large, and a receiver's own bends hid the horizon
 // from it. The plane errs to both sides alike.
+#include "pool/brick_normals.glsl"
 
 // How near the plane counts as met, in sides of the voxel. The planes of neighbours do not join to a closed surface: without
 // it, light leaks between them; with more, occluders grow again.
@@ -11,9 +12,9 @@
 // Does the ray, which has just come through the voxel, meet its surface? Where opposite sides cancel out there is no normal,
 // and the voxel is met as a whole.
 bool meets_surface(Ray ray, Sample s) {
-    const vec3 normal = texelFetch(brick_normal, s.texel + 1 + s.voxel, 0).xyz * 2.0 - 1.0;
+    const vec3 normal = mean_normal(texelFetch(brick_normal, s.texel + 1 + s.voxel, 0));
     const float size = length(normal);
-    if (size < 1.0 / 64.0) return true;
+    if (size < LEAST_MEAN_NORMAL) return true;
     const float half_chord = ray.t - s.t;
     const float middle = dot(ray.origin - s.centre, normal) + s.t * dot(ray.direction, normal);
     const float change = half_chord * dot(ray.direction, normal);

@@ -15,7 +15,7 @@
 #include "march/volume_light.glsl"
 #ifdef SOFT_SHADOWS
 #include "march/area_light.glsl"
-layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { uvec2 shadow_sums[]; };
+layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { ShadowSum shadow_sums[]; };
 #endif
 
 layout(local_size_x = 64) in;
@@ -86,15 +86,14 @@ bool find_light(ivec2 pixel, uint index, bool starts, inout RayState state) {
     uint first = 0u;
     float sum = 0.0;
     if (!starts) {
-        const uvec2 stored = shadow_sums[index];
-        first = stored.x;
-        sum = uintBitsToFloat(stored.y);
+        first = shadow_sums[index].ray;
+        sum = shadow_sums[index].visible;
     }
     int turns = 0;
     for (uint i = first; i < rays_a_pixel; ++i) {
         const LightSample there = light_sample(receiver, pixel, i);
         if (!trace(there.direction, there.reach, starts || i != first, state, turns)) {
-            shadow_sums[index] = uvec2(i, floatBitsToUint(sum));
+            shadow_sums[index] = ShadowSum(i, sum);
             return false;
         }
         sum += visibility;

@@ -40,3 +40,11 @@ Normals unpack_normals(vec4 texel) {
     n.share = 0.5 * texel.w;
     return n;
 }
+
+// Of the voxel's whole surface; short where its sides look different ways, and 0 where there is none.
+vec3 mean_normal(vec4 texel) {
+    const Normals n = unpack_normals(texel);
+    return has_normal(texel) ? mix(n.first, n.second, n.share) : vec3(0.0);
+}
+// A mean that is shorter comes of opposite sides that cancel out, and of how exactly the two are kept.
+#define LEAST_MEAN_NORMAL 0.125
