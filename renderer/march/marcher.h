@@ -75,7 +75,7 @@ struct MarchKind {
     std::string shadow = "march/shadow.comp.glsl";
     gl::Defines defines;
     std::function<void()> bind;  ///< before each pass; may be empty
-    bool shows_light = true;     ///< the shadow rays know SHOW_LIGHT
+    bool of_surfaces = true;     ///< the shadow rays know SHOW_LIGHT and SHADOW_CONES
 };
 
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
