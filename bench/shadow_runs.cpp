@@ -51,7 +51,8 @@ renderer::TreeOptions tree_of(int resolution) {
     int side = 16;
     while (side * tree.n <= resolution)
         side *= tree.n;
-    tree.m = side == resolution ? 16 : 32;
+    // N = 2 comes to the powers of two between: bricks of 32 voxels would hold, and produce, twice as much.
+    if (side != resolution) tree.n = 2;
     return tree;
 }
 

@@ -170,6 +170,8 @@ void MeshRaster::Parts::place(std::size_t chunk, unsigned first, unsigned count)
     place_triangles.set("first", first);
     place_triangles.set("count", count);
     place_triangles.use();
+    // Fragments of the batch before may still read what this overwrites.
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     gl::dispatch_threads(count, group_size);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     placed_of = std::pair(chunk, first);
