@@ -54,10 +54,10 @@ void add_comparison(Report& report, const ShadowTask& task, const ShadowOptions&
     report.add("too_light_pixels", error.too_light);
     report.add("too_dark_pixels", error.too_dark);
     report.add("mean_absolute_error", error.mean_absolute());
-    report.add("mean_error_in_shadow", error.mean_in_shadow());
+    report.add("error_in_shadow", error.mean_in_shadow());
     report.add("rmse", error.rmse());
     report.add("max_error", error.greatest);
-    report.add("truth_standard_error", truth.standard_error);
+    report.add("truth_std_error", truth.standard_error);
     if (truth.cached) {
         report.add("truth", "from the cache");
     } else {

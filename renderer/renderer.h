@@ -67,8 +67,9 @@ struct View {
     /// edge, and no light passes a sheet, however thin. A light nearer than a voxel and a half to a surface
     /// may be hidden by it, on either side. Where something stands on a receiver that is voxelized too, the
     /// shadow that its lowest 4 voxels (2.5 on a mesh) cast by themselves may be missing: under a light that
-    /// rises r a unit of way, 4 / r voxels from the foot of a thin sheet. A closed box leaks 2 at most while
-    /// the light stands 30 degrees high. A mesh that is not voxelized is shadowed from contact on.
+    /// rises r a unit of way, 4 / r voxels from the foot of a thin sheet. A closed box leaks 3 (2 on a mesh)
+    /// at most while the light stands 30 degrees high. A mesh that is not voxelized is shadowed from contact
+    /// on.
     int shadow_rays = 1;
     /// The shadow rays are cones, each as wide as its share of the light: they read coarser voxels the
     /// further they go, and one takes what several rays would find on average. One cone sees all of the

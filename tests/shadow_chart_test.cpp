@@ -78,8 +78,9 @@ void expect_every_method_where_it_applies(const Chart& chart) {
         EXPECT_GT(row.whole("pixels"), 100) << row.shown();
         EXPECT_LE(row.number("rmse"), 1.0) << row.shown();
     }
-    const std::set<std::string> hard = {"voxel-rays", "pcf", "embree-single", "embree-packets"};
-    const std::set<std::string> soft = {"voxel-rays", "pcf", "pcss", "embree-single", "embree-packets"};
+    const std::set<std::string> hard = {"voxel-rays", "pyramid", "pcf", "embree-single", "embree-packets"};
+    const std::set<std::string> soft = {"voxel-rays", "pyramid",       "pcf",
+                                        "pcss",       "embree-single", "embree-packets"};
     std::set<std::string> with_maps = soft;
     with_maps.insert("soft-shadow-map");
     EXPECT_EQ(methods["hard ground"], hard);

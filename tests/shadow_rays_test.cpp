@@ -236,7 +236,10 @@ TEST_F(ShadowRays, ImpossibleLightsAndVolumesAreRefused) {
     Renderer fog(volume, renderer::TransferFunction(
                              {{0.0F, {1.0F, 1.0F, 1.0F}, 0.0F}, {1.0F, {1.0F, 1.0F, 1.0F}, 1.0F}}));
     EXPECT_THROW((void)fog.light_shares(knot_view(1)), Error);
-    EXPECT_THROW((void)fog.render(knot_view(8)), Error);
+    View cones = knot_view(8);
+    EXPECT_NO_THROW((void)fog.render(cones));
+    cones.shadow_cones = true;
+    EXPECT_THROW((void)fog.render(cones), Error);
 }
 
 }  // namespace

@@ -86,7 +86,8 @@ void each(const LightShares& found, const View& view,
           const std::function<void(const dvec3&, double)>& judge) {
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x)
-            judge(floor_point(view, x, y), found.shares[std::size_t(y) * std::size_t(view.width) + std::size_t(x)]);
+            judge(floor_point(view, x, y),
+                  found.shares[std::size_t(y) * std::size_t(view.width) + std::size_t(x)]);
 }
 
 constexpr int resolution = 64;  // so four bricks an axis
@@ -316,8 +317,11 @@ private:
     double voxel_;
 };
 
-// Contact: a shadow begins no further than two voxels from the foot of the box that casts it.
-TEST_F(VoxelShadowLimits, ContactOfABoxLeaksTwoVoxelsAtMost) {
+constexpr double contact_of_voxels = 3.0;  // the header's figures
+constexpr double contact_of_meshes = 2.0;
+
+// Contact: so far from the foot of the box that casts it, a shadow has begun.
+TEST_F(VoxelShadowLimits, ContactOfABoxLeaksThreeVoxelsAtMost) {
     const dvec2 low(-0.3, -0.25);
     const dvec2 high(0.35, 0.3);
     const Corners box = box_corners({low.x, 0.0, low.y}, {high.x, 0.6, high.y});
@@ -334,14 +338,15 @@ TEST_F(VoxelShadowLimits, ContactOfABoxLeaksTwoVoxelsAtMost) {
                 const double off = glm::distance(at, glm::clamp(at, low, high)) / scene.voxel();
                 widest = std::max(widest, off);
             });
-            EXPECT_LE(widest, 2.0) << (as_mesh ? "mesh" : "voxels") << " towards (" << towards.x << ", "
-                                   << towards.y << ", " << towards.z << ")";
+            EXPECT_LE(widest, as_mesh ? contact_of_meshes : contact_of_voxels)
+                << (as_mesh ? "mesh" : "voxels") << " towards (" << towards.x << ", " << towards.y << ", "
+                << towards.z << ")";
             EXPECT_GT(dark, 200);
         }
     }
 }
 
-constexpr double foot_of_voxels = 4.0;  // the header's figures
+constexpr double foot_of_voxels = 4.0;  // the header's figures too
 constexpr double foot_of_meshes = 2.5;
 
 /// The fence is a sheet that stands on the floor. Where the light meets it less than `foot` voxels over the

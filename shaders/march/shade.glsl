@@ -19,7 +19,7 @@ vec3 direction_to_light(vec3 point) {
 }
 
 // A normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only because its
-// surface bends away in it, and is seen edge on; so does the interpolated normal of a mesh.
+// surface bends away in it, and is seen edge on.
 vec3 turned_to_viewer(vec3 normal, vec3 direction) {
     const float away = dot(normal, direction);
     if (away <= 0.0) return normal;
@@ -86,18 +86,24 @@ void write_pixel(ivec2 pixel, RayState state, float visibility) {
 
 vec3 mesh_point(MeshPixel mesh, PixelRay seen) { return seen.origin + seen.direction * mesh.t; }
 
+// The interpolated normal, on the side of the triangle that is seen. At a silhouette it may look away all the same.
+vec3 mesh_normal(MeshPixel mesh, PixelRay seen) {
+    const vec3 normal = dot(mesh.normal, mesh.plane) < 0.0 ? -mesh.normal : mesh.normal;
+    return normalize(normal - max(dot(normal, seen.direction), 0.0) * seen.direction);
+}
+
 // Is there light to be stopped on its way to the mesh, and does anyone see it?
 bool mesh_needs_shadow_ray(MeshPixel mesh, PixelRay seen, float transmittance) {
     if (!mesh_shadows || view.size_shadow.z == 0 || !is_there(mesh) || transmittance < OPAQUE_TRANSMITTANCE) return false;
     // Shading looks at the interpolated normal; whether light arrives is told by the triangle.
-    const vec3 normal = shows_light() ? mesh.plane : turned_to_viewer(mesh.normal, seen.direction);
+    const vec3 normal = shows_light() ? mesh.plane : mesh_normal(mesh, seen);
     return dot(normal, direction_to_light(mesh_point(mesh, seen))) > 0.0;
 }
 
 // What stands behind the voxels: the mesh, or the background, whose alpha is 0.
 vec4 lit_mesh(MeshPixel mesh, PixelRay seen, float mesh_visibility) {
     if (!is_there(mesh)) return vec4(view.background.rgb, 0.0);
-    const vec3 normal = turned_to_viewer(mesh.normal, seen.direction);
+    const vec3 normal = mesh_normal(mesh, seen);
     return vec4(mesh.color * light_on(mesh_point(mesh, seen), normal, mesh_visibility), 1.0);
 }
 

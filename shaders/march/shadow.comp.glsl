@@ -27,12 +27,7 @@
 #endif
 #include "march/march.glsl"
 #include "march/shade.glsl"
-#if defined(WITH_MESHES) || defined(SOFT_SHADOWS)
-#define TELLS_SURFACE 1
-#include "march/surface_plane.glsl"
-#else
-#define TELLS_SURFACE 0
-#endif
+#include "pool/brick_normals.glsl"
 #ifdef SOFT_SHADOWS
 #include "march/area_light.glsl"
 #ifdef SHADOW_CONES
@@ -55,6 +50,12 @@ float visibility;
 
 float own_side;  // of the voxels that the receiver is shown with; of the finer ones, when they are blended
 #include "march/own_surface.glsl"
+#if defined(WITH_MESHES) || defined(SOFT_SHADOWS)
+#define TELLS_SURFACE 1
+#include "march/surface_plane.glsl"
+#else
+#define TELLS_SURFACE 0
+#endif
 
 #define OWN_HEIGHT 1.75  // in voxels
 
@@ -105,7 +106,12 @@ bool visit(inout Ray ray, Sample s) {
     }
 #endif
 #if TELLS_SURFACE
-    if (!meets_surface(ray, s)) return true;
+#if WINDOWS
+    const float near = ldexp(own_reach, N_SHIFT * (seen_window - ray.window));
+#else
+    const float near = own_reach;
+#endif
+    if (passes_by(ray, s, near)) return true;
 #endif
     if (!is_own(ray, s.centre, s.t, s.side)) visibility = behind(visibility, coverage_of(s), s.share);
     return visibility > OPAQUE_TRANSMITTANCE;
