@@ -26,7 +26,7 @@ struct ShadowOptions {
     std::optional<std::filesystem::path> output;
     std::optional<std::filesystem::path> difference;
     std::optional<int> rays;
-    bool cones = false;  ///< in place of rays
+    bool cones = false;                        ///< in place of rays
     std::optional<renderer::Light> direction;  ///< from --light-direction
     std::optional<glm::dvec2> rectangle;       ///< width and height
     std::optional<double> disk;                ///< radius

@@ -42,8 +42,8 @@ struct PyramidShadowRenderer::Parts {
     std::optional<voxelizer::MovingSurface> moving;
     std::optional<MeshRaster> raster;
     bool raster_on_cpu = false;  ///< it shows a surface that the CPU built for one moment
-    bool is_built = false;  ///< the pyramid is that of the surface as it stands
-    double move_ms = 0.0;   ///< since the last frame
+    bool is_built = false;       ///< the pyramid is that of the surface as it stands
+    double move_ms = 0.0;        ///< since the last frame
     PyramidShadowStatistics statistics;
 };
 

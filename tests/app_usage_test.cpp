@@ -138,22 +138,22 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{voxelize({"-r", "8", "-o", "voxels.ply"}), "what this verb writes ends in .npy"},
                       Wrong{voxelize({"-r", "8", "-o", "voxels"}), ".npy"}));
 
-INSTANTIATE_TEST_SUITE_P(Render, AppWrongUsage,
-                         ::testing::Values(Wrong{render({"--size", "512"}), "is not WIDTHxHEIGHT"},
-                                           Wrong{render({"--size", "0x4"}), "from 1 to"},
-                                           Wrong{render({"--size", "4x16385"}), "16384"},
-                                           Wrong{render({"--size", "4x4x4"}), "WIDTHxHEIGHT"},
-                                           Wrong{render({"--camera", "1,2,3"}), "has 3 of the 6 or 7"},
-                                           Wrong{render({"--camera", "1,2,3,1,2,3"}), "the same point"},
-                                           Wrong{render({"--camera", "0,0,5,0,0,0,180"}), "field of view"},
-                                           Wrong{render({"--camera", "0,0,5,0,0,0,0"}), "field of view"},
-                                           Wrong{render({"--light", "1,2"}), "has 2 of the 3"},
-                                           Wrong{render({"--light", "1,2,3,-0.5"}), "negative"},
-                                           Wrong{render({"--shadow", "blurred"}), "choose none, hard or soft"},
-                                           Wrong{render({"--max-resolution", "0"}), "--max-resolution"},
-                                           Wrong{render({"--brick-pool", "lots"}), "--brick-pool"},
-                                           Wrong{render({"-o", "picture.jpg"}),
-                                                 "what this verb writes ends in .png"}));
+INSTANTIATE_TEST_SUITE_P(
+    Render, AppWrongUsage,
+    ::testing::Values(Wrong{render({"--size", "512"}), "is not WIDTHxHEIGHT"},
+                      Wrong{render({"--size", "0x4"}), "from 1 to"},
+                      Wrong{render({"--size", "4x16385"}), "16384"},
+                      Wrong{render({"--size", "4x4x4"}), "WIDTHxHEIGHT"},
+                      Wrong{render({"--camera", "1,2,3"}), "has 3 of the 6 or 7"},
+                      Wrong{render({"--camera", "1,2,3,1,2,3"}), "the same point"},
+                      Wrong{render({"--camera", "0,0,5,0,0,0,180"}), "field of view"},
+                      Wrong{render({"--camera", "0,0,5,0,0,0,0"}), "field of view"},
+                      Wrong{render({"--light", "1,2"}), "has 2 of the 3"},
+                      Wrong{render({"--light", "1,2,3,-0.5"}), "negative"},
+                      Wrong{render({"--shadow", "blurred"}), "choose none, hard or soft"},
+                      Wrong{render({"--max-resolution", "0"}), "--max-resolution"},
+                      Wrong{render({"--brick-pool", "lots"}), "--brick-pool"},
+                      Wrong{render({"-o", "picture.jpg"}), "what this verb writes ends in .png"}));
 
 TEST(AppInput, MissingFileIsCode3) {
     expect_error(cairn({"info", "no-such-file.glb"}), 3, "no-such-file.glb");

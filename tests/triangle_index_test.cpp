@@ -1,9 +1,8 @@
 // The triangle lists of tiles against all triangles of all tiles. CPU only.
-#include "renderer/produce/tile_lists.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "renderer/produce/tile_lists.h"
 #include "scenes/builtin.h"
 #include "scenes/snapshot.h"
 #include "tests/lattice_surface.h"
@@ -82,8 +81,8 @@ Tile tile_at_vertex(Random& random, const TreeShape& shape, const voxelizer::Sur
 }
 
 /// Every list equals brute force, triangle by triangle.
-std::size_t expect_same_lists(voxelizer::TriangleIndex& lists, const TreeShape& shape, const voxelizer::Surface& surface,
-                              int tiles_a_level, int seed) {
+std::size_t expect_same_lists(voxelizer::TriangleIndex& lists, const TreeShape& shape,
+                              const voxelizer::Surface& surface, int tiles_a_level, int seed) {
     Random random{std::uint32_t(seed)};
     std::size_t listed = 0;
     for (int i = 0; i < tiles_a_level; ++i) {

@@ -1,7 +1,5 @@
 #include <algorithm>
 // The explorer without its window: cameras, pace, and pictures that come to be in slices.
-#include "app/viewer/viewer.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -11,6 +9,7 @@
 #include "app/viewer/orbit_camera.h"
 #include "app/viewer/pace.h"
 #include "app/viewer/refinement.h"
+#include "app/viewer/viewer.h"
 #include "base/error.h"
 #include "scenes/builtin.h"
 #include "scenes/snapshot.h"

@@ -25,9 +25,9 @@ struct Channels {
 ///     color    3D texture, (M + 2)^3 texels a slot: RGBA8 (square root of linear colour times coverage,
 ///     coverage),
 ///              or R8 coverage (of a volume: density) alone when the scene has no colour
-///     normal   3D texture, RGB10_A2: two normals, as shaders/pool/brick_normals.glsl packs them; where there are normals
-///     masks    64-bit words: which blocks of b^3 voxels are not empty (1 word for each 64 blocks), then one
-///     word a block:
+///     normal   3D texture, RGB10_A2: two normals, as shaders/pool/brick_normals.glsl packs them; where there
+///     are normals masks    64-bit words: which blocks of b^3 voxels are not empty (1 word for each 64
+///     blocks), then one word a block:
 ///              which of its voxels are occupied; bit x + b (y + b z). b = TreeShape::block_side(): 4, or 3
 ///              where n = 3
 ///

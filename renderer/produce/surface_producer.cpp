@@ -29,7 +29,8 @@ std::size_t voxels_a_brick(const TreeShape& shape) {
 }
 
 std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
-    return voxels_a_brick(shape) * (has_color ? 14 : 11) * sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
+    return voxels_a_brick(shape) * (has_color ? 14 : 11) *
+           sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
 }
 
 /// The voxels of that side that lattice coordinates lie in: rounded down.
