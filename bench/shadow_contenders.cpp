@@ -27,6 +27,8 @@ constexpr std::array pyramid_resolutions = {128, 256, 512, 1024};
 /// frame should produce what the one before it had.
 constexpr std::size_t finest_pool_bytes = std::size_t(1) << 19U;
 constexpr std::array ray_counts = {1, 4, 16, 64, 256};
+constexpr std::array cone_counts = {1, 2, 4, 8, 16};
+constexpr int own_cones = 4;
 constexpr std::array map_sizes = {64, 128, 256, 512};
 constexpr int own_map_size = 256;
 constexpr std::array plain_map_sizes = {512, 1024, 2048, 4096};
@@ -68,6 +70,22 @@ void add_voxel_rays(const ShadowTrial& trial, Contenders& all) {
         if (rays != own_rays) add("rays", rays, own_resolution);
     for (const int rays : ray_counts)
         add("rays, by pixel", rays, std::nullopt);
+}
+
+void add_voxel_cones(const ShadowTrial& trial, Contenders& all) {
+    if (!trial.is_soft) return;
+    const auto add = [&](const char* varied, int cones, int resolution) {
+        renderer::View view = trial.scene.view(trial.width, trial.height, cones);
+        view.shadow_cones = true;
+        view.pixel_error = always_finest;
+        all.push_back({.method = "voxel-cones",
+                       .setting = {.varied = varied, .rays = cones, .resolution = resolution},
+                       .run = [&trial, resolution, view] { return run_voxels(trial, resolution, view); }});
+    };
+    for (const int cones : cone_counts)
+        add("cones", cones, own_resolution);
+    for (const int resolution : resolutions)
+        if (resolution != own_resolution) add("resolution", own_cones, resolution);
 }
 
 void add_pyramid(const ShadowTrial& trial, Contenders& all) {
@@ -227,8 +245,8 @@ void add_embree(const ShadowTrial& trial, Contenders& all) {
 }  // namespace
 
 std::vector<ShadowContender> shadow_contenders(const ShadowTrial& trial) {
-    constexpr std::array makers = {add_voxel_rays, add_pyramid, add_soft_shadow_maps, add_plain_maps,
-                                   add_embree};
+    constexpr std::array makers = {add_voxel_rays,       add_voxel_cones, add_pyramid,
+                                   add_soft_shadow_maps, add_plain_maps,  add_embree};
     Contenders all;
     for (const auto& add : makers)
         add(trial, all);

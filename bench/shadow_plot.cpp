@@ -28,14 +28,15 @@ struct MethodColor {
     const char* method;
     const char* color;
 };
-constexpr std::array<MethodColor, 7> colors = {{{"voxel-rays", "#d55e00"},
+constexpr std::array<MethodColor, 8> colors = {{{"voxel-rays", "#d55e00"},
+                                                {"voxel-cones", "#a0522d"},
                                                 {"pyramid", "#e69f00"},
                                                 {"soft-shadow-map", "#0072b2"},
                                                 {"pcf", "#888888"},
                                                 {"pcss", "#009e73"},
                                                 {"embree-single", "#000000"},
                                                 {"embree-packets", "#cc79a7"}}};
-constexpr std::array other_colors = {"#56b4e9", "#a0522d"};
+constexpr std::array other_colors = {"#56b4e9"};
 constexpr std::array points_of_lines = {7, 5, 9, 11, 13, 15};
 
 struct Panel {
