@@ -89,4 +89,9 @@ struct ChartKind {
 void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
                 const std::string& text);
 
+/// Draws the chart's table as `folder`/`name`, or notes why it cannot.
+/// @param script_of  the gnuplot script of a table's picture, to be written there
+void write_picture(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+                   std::string (*script_of)(const Table&, const std::filesystem::path&));
+
 }  // namespace cairn::bench

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "bench/chart.h"
+#include "bench/gnuplot.h"
 
 namespace cairn::bench {
 
@@ -34,6 +35,17 @@ void write_file(Chart& chart, const std::filesystem::path& folder, const std::st
     file.write(text.data(), text.size());
     file.commit();
     chart.files.push_back(path);
+}
+
+void write_picture(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+                   std::string (*script_of)(const Table&, const std::filesystem::path&)) {
+    const std::filesystem::path path = folder / name;
+    const std::string failure = run_gnuplot(script_of(chart.table, path), folder);
+    if (failure.empty()) {
+        chart.files.push_back(path);
+    } else {
+        chart.notes.push_back("no picture: " + failure);
+    }
 }
 
 }  // namespace cairn::bench

@@ -8,7 +8,6 @@
 
 #include "bench/chart.h"
 #include "bench/frames.h"
-#include "bench/gnuplot.h"
 #include "bench/real_scenes.h"
 #include "bench/render_plot.h"
 #include "bench/samples.h"
@@ -168,14 +167,7 @@ Chart chart_render(const ChartOptions& options) {
         if (options.progress) options.progress(done);
     }
     write_file(chart, options.folder, "render.csv", csv_of(chart.table));
-    constexpr const char* picture = "render.png";
-    const std::string failure =
-        run_gnuplot(render_plot(chart.table, options.folder / picture), options.folder);
-    if (failure.empty()) {
-        chart.files.push_back(options.folder / picture);
-    } else {
-        chart.notes.push_back("no picture: " + failure);
-    }
+    write_picture(chart, options.folder, "render.png", render_plot);
     return chart;
 }
 

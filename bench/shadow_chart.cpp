@@ -9,7 +9,6 @@
 
 #include "bench/chart.h"
 #include "bench/frames.h"
-#include "bench/gnuplot.h"
 #include "bench/real_scenes.h"
 #include "bench/shadow_contenders.h"
 #include "bench/shadow_plot.h"
@@ -270,14 +269,7 @@ Chart chart_shadow(const ChartOptions& options) {
         });
     }
     write_file(chart, options.folder, "shadow.csv", csv_of(chart.table));
-    constexpr const char* picture = "shadow.png";
-    const std::string failure =
-        run_gnuplot(shadow_plot(chart.table, options.folder / picture), options.folder);
-    if (failure.empty()) {
-        chart.files.push_back(options.folder / picture);
-    } else {
-        chart.notes.push_back("no picture: " + failure);
-    }
+    write_picture(chart, options.folder, "shadow.png", shadow_plot);
     return chart;
 }
 

@@ -10,7 +10,6 @@
 
 #include "bench/chart.h"
 #include "bench/frames.h"
-#include "bench/gnuplot.h"
 #include "bench/real_scenes.h"
 #include "bench/samples.h"
 #include "bench/soft_shadow_plot.h"
@@ -289,14 +288,7 @@ Chart chart_soft_shadow_map(const ChartOptions& options) {
         }
     }
     write_file(chart, options.folder, "soft_shadow_map.csv", csv_of(chart.table));
-    constexpr const char* picture = "soft_shadow_map.png";
-    const std::string failure =
-        run_gnuplot(soft_shadow_plot(chart.table, options.folder / picture), options.folder);
-    if (failure.empty()) {
-        chart.files.push_back(options.folder / picture);
-    } else {
-        chart.notes.push_back("no picture: " + failure);
-    }
+    write_picture(chart, options.folder, "soft_shadow_map.png", soft_shadow_plot);
     return chart;
 }
 

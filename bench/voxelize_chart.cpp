@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "bench/chart.h"
 #include "bench/contenders.h"
-#include "bench/gnuplot.h"
 #include "bench/real_scenes.h"
 #include "bench/samples.h"
 #include "bench/voxelize_plot.h"
@@ -189,14 +188,7 @@ Chart chart_voxelize(const ChartOptions& options) {
         });
     }
     write_file(chart, options.folder, "voxelize.csv", csv_of(chart.table));
-    constexpr const char* picture = "voxelize.png";
-    const std::string failure =
-        run_gnuplot(voxelize_plot(chart.table, options.folder / picture), options.folder);
-    if (failure.empty()) {
-        chart.files.push_back(options.folder / picture);
-    } else {
-        chart.notes.push_back("no picture: " + failure);
-    }
+    write_picture(chart, options.folder, "voxelize.png", voxelize_plot);
     return chart;
 }
 
