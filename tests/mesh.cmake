@@ -4,7 +4,7 @@ cairn_test(mesh_raster_test
   LIBRARIES cairn::renderer cairn::reference fmt::fmt
   TIMEOUT 120)
 cairn_test(mesh_mix_test
-  SOURCES mesh_mix_test.cpp mesh_rays.h gl_fixture.h test_scenes.h test_scenes.cpp
+  SOURCES mesh_mix_test.cpp mesh_proxy_test.cpp mesh_mix_pictures.h mesh_rays.h gl_fixture.h test_scenes.h test_scenes.cpp
   LIBRARIES cairn::renderer cairn::reference fmt::fmt
   TIMEOUT 120)
 find_package(nlohmann_json REQUIRED)
