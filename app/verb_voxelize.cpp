@@ -16,8 +16,8 @@
 #include "app/verbs.h"
 #include "app/voxelization.h"
 #include "base/error.h"
-#include "voxelizer/voxel_files.h"
-#include "voxelizer/write_npy.h"
+#include "voxelizer/files/voxel_files.h"
+#include "voxelizer/files/write_npy.h"
 
 namespace cairn::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/measure.h"
 #include "app/progress.h"
 #include "app/terminal.h"
-#include "voxelizer/solid_tiles.h"
+#include "voxelizer/solid/solid_tiles.h"
 
 namespace cairn::app {
 

@@ -7,13 +7,13 @@
 #include "app/options.h"
 #include "app/report.h"
 #include "app/scene_input.h"
-#include "voxelizer/fill.h"
 #include "voxelizer/grid.h"
-#include "voxelizer/surface.h"
-#include "voxelizer/triangle_index.h"
-#include "voxelizer/voxel_attributes.h"
-#include "voxelizer/voxelize_tiles.h"
-#include "voxelizer/voxelizer.h"
+#include "voxelizer/methods/voxel_attributes.h"
+#include "voxelizer/methods/voxelize_tiles.h"
+#include "voxelizer/methods/voxelizer.h"
+#include "voxelizer/solid/fill.h"
+#include "voxelizer/surface/surface.h"
+#include "voxelizer/surface/triangle_index.h"
 
 namespace cairn::app {
 

@@ -6,10 +6,10 @@
 #include "bench/cpu_row_span.h"
 #include "bench/three_directions.h"
 #include "gl/context.h"
-#include "voxelizer/triangle_index.h"
-#include "voxelizer/voxel_tiles.h"
-#include "voxelizer/voxelize_tiles.h"
-#include "voxelizer/voxelizer.h"
+#include "voxelizer/files/voxel_tiles.h"
+#include "voxelizer/methods/voxelize_tiles.h"
+#include "voxelizer/methods/voxelizer.h"
+#include "voxelizer/surface/triangle_index.h"
 #ifdef CAIRN_BENCH_OPENVDB
 #include "bench/openvdb_mesh.h"
 #endif

@@ -6,8 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include "bench/row_spans.h"
-#include "voxelizer/exact_mask.h"
-#include "voxelizer/far_triangles.h"
+#include "voxelizer/surface/exact_mask.h"
+#include "voxelizer/surface/far_triangles.h"
 
 namespace cairn::bench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/grid.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::bench {
 

@@ -15,8 +15,8 @@
 #include "renderer/renderer.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/surface/surface.h"
 #ifdef CAIRN_BENCH_NANOVDB
 #include "bench/nanovdb_march.h"
 #endif

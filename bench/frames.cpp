@@ -15,7 +15,7 @@
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "scenes/volume.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::bench {
 namespace {

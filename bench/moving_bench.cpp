@@ -26,8 +26,8 @@
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "scenes/transform.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/moving_surface.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/surface/moving_surface.h"
 
 namespace {
 

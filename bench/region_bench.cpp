@@ -26,9 +26,9 @@
 #include "gl/context.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/triangle_index.h"
-#include "voxelizer/voxelize_tiles.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/methods/voxelize_tiles.h"
+#include "voxelizer/surface/triangle_index.h"
 
 namespace {
 

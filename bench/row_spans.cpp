@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "voxelizer/wide_integer.h"
+#include "voxelizer/surface/wide_integer.h"
 
 namespace cairn::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include "gl/buffer.h"
 #include "gl/handle.h"
 #include "gl/program.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::bench {
 

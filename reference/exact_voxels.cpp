@@ -13,7 +13,7 @@
 #include "reference/embree.h"
 #include "reference/separating_axes.h"
 #include "shaders/interop/config.h"
-#include "voxelizer/exact_mask.h"
+#include "voxelizer/surface/exact_mask.h"
 
 namespace cairn::reference {
 namespace {

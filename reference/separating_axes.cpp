@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "voxelizer/wide_integer.h"
+#include "voxelizer/surface/wide_integer.h"
 
 namespace cairn::reference {
 namespace {

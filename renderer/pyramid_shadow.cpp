@@ -13,8 +13,8 @@
 #include "renderer/shadow/column_pyramid.h"
 #include "renderer/shadow/column_shadows.h"
 #include "shaders/interop/config.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/moving_surface.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/surface/moving_surface.h"
 
 namespace cairn::renderer {
 

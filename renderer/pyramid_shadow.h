@@ -41,7 +41,7 @@ public:
     PyramidShadowRenderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                           const PyramidShadowOptions& options = {}, const gl::ShaderSource& shaders = {});
 
-    /// A scene that moves (voxelizer/moving_surface.h), at `when.seconds` first. It must outlive the
+    /// A scene that moves (voxelizer/surface/moving_surface.h), at `when.seconds` first. It must outlive the
     /// renderer.
     /// @param bounds  hold it at all times that will be asked for (scenes::bounds_over_animation): what is
     ///                outside casts no shadow.

@@ -16,7 +16,7 @@
 #include "renderer/produce/volume_content.h"
 #include "renderer/renderer_parts.h"
 #include "shaders/interop/config.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
 namespace {

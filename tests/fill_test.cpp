@@ -1,5 +1,5 @@
 // Solid fill: against closed forms, against solid angles, and against itself seen from elsewhere.
-#include "voxelizer/fill.h"
+#include "voxelizer/solid/fill.h"
 
 #include <cmath>
 

@@ -38,8 +38,8 @@ const std::vector<Folder> folders = {
     // reference is to judge.
     {"reference/",
      {"reference/", "scenes/", "shaders/interop/", "base/", "voxelizer/grid.h", "voxelizer/bit_grid.h",
-      "voxelizer/surface.h", "voxelizer/exact_mask.h", "voxelizer/wide_integer.h", "renderer/camera.h",
-      "renderer/light.h"}},
+      "voxelizer/surface/surface.h", "voxelizer/surface/exact_mask.h", "voxelizer/surface/wide_integer.h",
+      "renderer/camera.h", "renderer/light.h"}},
     {"renderer/pool/", {"renderer/pool/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/produce/",
      {"renderer/produce/", "renderer/pool/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/"}},
@@ -151,7 +151,7 @@ class FakeTree : public testing::Test {
 protected:
     FakeTree() {
         for (const char* file :
-             {"base/error.h", "gl/buffer.h", "voxelizer/grid.h", "voxelizer/voxelizer.h",
+             {"base/error.h", "gl/buffer.h", "voxelizer/grid.h", "voxelizer/methods/voxelizer.h",
               "renderer/pool/pool.h", "renderer/march/march.h", "renderer/renderer.h",
               "shaders/interop/config.h", "shaders/march/march.glsl", "reference/exact.h"}) {
             add(file, "#pragma once\n");
@@ -169,7 +169,8 @@ private:
 TEST_F(FakeTree, WithArrowsAlongTheWayHasNoViolation) {
     add("gl/buffer.cpp", "#include \"gl/buffer.h\"\n#include <vector>\n#include \"base/error.h\"\n");
     add("gl/window.cpp", "#include <GLFW/glfw3.h>\n");
-    add("renderer/renderer.cpp", "#include \"renderer/march/march.h\"\n#include \"voxelizer/voxelizer.h\"\n");
+    add("renderer/renderer.cpp",
+        "#include \"renderer/march/march.h\"\n#include \"voxelizer/methods/voxelizer.h\"\n");
     add("reference/exact.cpp", "#include <embree3/rtcore.h>\n#include \"voxelizer/grid.h\"\n");
     add("shaders/march/shadow.comp.glsl", "#include \"march/march.glsl\"\n#include \"interop/config.h\"\n");
     add("tests/a_test.cpp",
@@ -180,7 +181,7 @@ TEST_F(FakeTree, WithArrowsAlongTheWayHasNoViolation) {
 TEST_F(FakeTree, WithArrowsAgainstTheWayNamesFileAndLine) {
     add("base/error.cpp", "\n#include \"gl/buffer.h\"\n");
     add("gl/buffer.cpp", "#include \"gl/buffer.h\"\n// a comment\n  #  include \"voxelizer/grid.h\"\n");
-    add("reference/exact.cpp", "#include \"voxelizer/voxelizer.h\"\n");
+    add("reference/exact.cpp", "#include \"voxelizer/methods/voxelizer.h\"\n");
     add("renderer/pool/pool.cpp", "#include \"renderer/march/march.h\"\n");
     add("renderer/extra/extra.cpp", "#include \"renderer/pool/pool.h\"\n");
     add("shaders/interop/types.h", "#include \"march/march.glsl\"\n");
@@ -188,7 +189,7 @@ TEST_F(FakeTree, WithArrowsAgainstTheWayNamesFileAndLine) {
     const std::vector<std::string> expected = {
         "base/error.cpp:2: base/ may not include \"gl/buffer.h\"",
         "gl/buffer.cpp:3: gl/ may not include \"voxelizer/grid.h\"",
-        "reference/exact.cpp:1: reference/ may not include \"voxelizer/voxelizer.h\"",
+        "reference/exact.cpp:1: reference/ may not include \"voxelizer/methods/voxelizer.h\"",
         "renderer/extra/extra.cpp:1: the table names no such folder",
         "renderer/pool/pool.cpp:1: renderer/pool/ may not include \"renderer/march/march.h\"",
         "shaders/interop/types.h:1: shaders/interop/ may not include \"march/march.glsl\"",

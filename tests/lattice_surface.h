@@ -12,7 +12,7 @@
 #include "reference/exact_voxels.h"
 #include "reference/separating_axes.h"
 #include "scenes/snapshot.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::test {
 

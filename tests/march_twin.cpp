@@ -8,7 +8,7 @@
 
 #include "reference/exact_voxels.h"
 #include "scenes/snapshot.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::test {
 

@@ -15,8 +15,8 @@
 #include "scenes/snapshot.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/moving_surface.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/surface/moving_surface.h"
 
 namespace cairn::test {
 

@@ -6,7 +6,7 @@
 #include "renderer/produce/tile_lists.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
-#include "voxelizer/conservative_voxelizer.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
 
 namespace cairn::renderer {
 namespace {

@@ -9,7 +9,7 @@
 #include "renderer/pool/tree_shape.h"
 #include "renderer/produce/surface_producer.h"
 #include "voxelizer/bit_grid.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 /// Reads bricks back as the marcher sees them.
 namespace cairn::test {

@@ -25,7 +25,7 @@
 #include "tests/mesh_rays.h"
 #include "tests/moving_scenes.h"
 #include "tests/test_scenes.h"
-#include "voxelizer/moving_surface.h"
+#include "voxelizer/surface/moving_surface.h"
 
 namespace cairn::test {
 namespace {

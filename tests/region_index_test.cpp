@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/lattice_surface.h"
-#include "voxelizer/triangle_index.h"
+#include "voxelizer/surface/triangle_index.h"
 
 namespace cairn::voxelizer {
 namespace {

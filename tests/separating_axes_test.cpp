@@ -11,7 +11,7 @@
 
 #include "tests/clipped_triangle.h"
 #include "tests/lattice_surface.h"
-#include "voxelizer/wide_integer.h"
+#include "voxelizer/surface/wide_integer.h"
 
 namespace cairn::reference {
 namespace {

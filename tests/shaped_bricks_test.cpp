@@ -9,8 +9,8 @@
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
 #include "tests/produced_brick.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/wide_integer.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/surface/wide_integer.h"
 
 namespace cairn::renderer {
 namespace {

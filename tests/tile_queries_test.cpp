@@ -20,7 +20,7 @@
 #include "tests/lattice_surface.h"
 #include "tests/test_scenes.h"
 #include "tests/volume_scenes.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::test {
 namespace {

@@ -1,5 +1,5 @@
 // Colours and normals of voxels against an integral over clipped polygons (attribute_truth.h).
-#include "voxelizer/voxel_attributes.h"
+#include "voxelizer/methods/voxel_attributes.h"
 
 #include <algorithm>
 #include <numeric>
@@ -10,8 +10,8 @@
 #include "tests/attribute_truth.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/voxel_tiles.h"
+#include "voxelizer/files/voxel_tiles.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {

@@ -1,5 +1,5 @@
 // Voxel files, read back by other readers (read_voxels.py).
-#include "voxelizer/voxel_files.h"
+#include "voxelizer/files/voxel_files.h"
 
 #include <chrono>
 #include <cstdlib>
@@ -17,9 +17,9 @@
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
 #include "tests/scratch_folder.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/voxel_attributes.h"
-#include "voxelizer/voxel_tiles.h"
+#include "voxelizer/files/voxel_tiles.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/methods/voxel_attributes.h"
 
 namespace cairn::voxelizer {
 namespace {

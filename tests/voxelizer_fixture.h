@@ -5,7 +5,7 @@
 
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
-#include "voxelizer/conservative_voxelizer.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
 
 namespace cairn::test {
 

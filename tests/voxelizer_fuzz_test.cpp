@@ -7,7 +7,7 @@
 #include "tests/clipped_triangle.h"
 #include "tests/fuzz.h"
 #include "tests/voxelizer_fixture.h"
-#include "voxelizer/wide_integer.h"
+#include "voxelizer/surface/wide_integer.h"
 
 namespace cairn::voxelizer {
 namespace {

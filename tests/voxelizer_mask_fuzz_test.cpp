@@ -1,13 +1,13 @@
 // Alpha masks against clipping: the part of a triangle inside a voxel is clipped to each texel and to where
 // its alpha passes. A witness that shares nothing with the shaders, nor with the definition
-// (voxelizer/exact_mask.h). CAIRN_FUZZ_TRIALS and CAIRN_FUZZ_SEED ask for a longer trial.
+// (voxelizer/surface/exact_mask.h). CAIRN_FUZZ_TRIALS and CAIRN_FUZZ_SEED ask for a longer trial.
 #include <gtest/gtest.h>
 
 #include "tests/clipped_triangle.h"
 #include "tests/fuzz.h"
 #include "tests/masked_scene.h"
 #include "tests/voxelizer_fixture.h"
-#include "voxelizer/wide_integer.h"
+#include "voxelizer/surface/wide_integer.h"
 
 namespace cairn::voxelizer {
 namespace {

@@ -1,12 +1,12 @@
-// Alpha masks: the shader against the definition (voxelizer/exact_mask.h), and the definition against
+// Alpha masks: the shader against the definition (voxelizer/surface/exact_mask.h), and the definition against
 // samples.
 #include <gtest/gtest.h>
 
 #include "tests/lattice_surface.h"
 #include "tests/masked_scene.h"
 #include "tests/voxelizer_fixture.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/exact_mask.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/surface/exact_mask.h"
 
 namespace cairn::voxelizer {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/pyramid_builder.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/methods/pyramid_builder.h"
 
 namespace cairn::voxelizer {
 namespace {

@@ -11,7 +11,7 @@
 #include "scenes/snapshot.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
-#include "voxelizer/raster_voxelizer.h"
+#include "voxelizer/methods/raster_voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {

@@ -10,8 +10,8 @@
 #include "gl/handle.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"
-#include "voxelizer/raster_tiles.h"
-#include "voxelizer/raster_voxelizer.h"
+#include "voxelizer/methods/raster_tiles.h"
+#include "voxelizer/methods/raster_voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {

@@ -9,7 +9,7 @@
 #include "scenes/snapshot.h"
 #include "tests/lattice_surface.h"
 #include "tests/voxelizer_fixture.h"
-#include "voxelizer/conservative_voxelizer.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {

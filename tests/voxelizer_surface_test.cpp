@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "tests/lattice_surface.h"
 #include "tests/scratch_folder.h"
-#include "voxelizer/surface.h"
-#include "voxelizer/write_npy.h"
+#include "voxelizer/files/write_npy.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::voxelizer {
 namespace {

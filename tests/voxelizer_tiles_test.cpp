@@ -9,9 +9,9 @@
 #include "scenes/snapshot.h"
 #include "tests/lattice_surface.h"
 #include "tests/voxelizer_fixture.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/solid_tiles.h"
-#include "voxelizer/voxelize_tiles.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/methods/voxelize_tiles.h"
+#include "voxelizer/solid/solid_tiles.h"
 
 namespace cairn::voxelizer {
 namespace {

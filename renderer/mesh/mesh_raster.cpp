@@ -12,7 +12,7 @@
 #include "renderer/mesh/mesh_targets.h"
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
 namespace {

@@ -13,7 +13,7 @@
 #include "scenes/snapshot.h"
 #include "shaders/interop/types.h"
 #include "voxelizer/grid.h"
-#include "voxelizer/surface.h"
+#include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
 
@@ -74,7 +74,7 @@ public:
     [[nodiscard]] MeshSurface draw_surface(const interop::MarchView& view, const MarchSpace& space, int row);
     [[nodiscard]] MeshSpan draw_span(const interop::MarchView& view, const MarchSpace& space, int row);
 
-    /// The vertices of the surface have moved in its lattice (voxelizer/moving_surface.h).
+    /// The vertices of the surface have moved in its lattice (voxelizer/surface/moving_surface.h).
     void surface_moved();
     /// Shows another surface in the same lattice, of the same materials, from now on.
     void show(const voxelizer::GpuSurface& surface);

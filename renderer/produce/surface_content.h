@@ -4,9 +4,9 @@
 #include "renderer/produce/content.h"
 #include "renderer/produce/surface_oracle.h"
 #include "renderer/produce/surface_producer.h"
-#include "voxelizer/conservative_voxelizer.h"
-#include "voxelizer/surface.h"
-#include "voxelizer/triangle_index.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/surface/surface.h"
+#include "voxelizer/surface/triangle_index.h"
 
 namespace cairn::renderer {
 

@@ -4,9 +4,9 @@
 
 #include "renderer/produce/oracle.h"
 #include "voxelizer/bit_grid.h"
-#include "voxelizer/surface.h"
-#include "voxelizer/triangle_index.h"
-#include "voxelizer/voxelizer.h"
+#include "voxelizer/methods/voxelizer.h"
+#include "voxelizer/surface/surface.h"
+#include "voxelizer/surface/triangle_index.h"
 
 namespace cairn::renderer {
 

@@ -7,8 +7,8 @@
 #include "gl/program.h"
 #include "renderer/produce/producer.h"
 #include "shaders/interop/types.h"
-#include "voxelizer/surface.h"
-#include "voxelizer/triangle_index.h"
+#include "voxelizer/surface/surface.h"
+#include "voxelizer/surface/triangle_index.h"
 
 namespace cairn::renderer {
 

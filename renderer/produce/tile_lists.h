@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/pool/tree_shape.h"
-#include "voxelizer/triangle_index.h"
+#include "voxelizer/surface/triangle_index.h"
 
 namespace cairn::renderer {
 

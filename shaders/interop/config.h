@@ -38,7 +38,7 @@
 #define MASK_SURFACE 1
 #define MASK_UNDECIDED 2      // left to the CPU: too many steps, or vertex alphas under 1
 
-// Attributes of voxels (voxelizer/voxel_attributes.h).
+// Attributes of voxels (voxelizer/methods/voxel_attributes.h).
 #define VOXEL_RANK_WORDS 8
 #define ATTRIBUTE_PAIRS 1048576         // at a time
 #define ATTRIBUTE_PART_VOXELS 1048576   // occupied voxels at a time
@@ -65,7 +65,7 @@
 #define RASTER_KINDS 4
 #define RASTER_FAR_VOXELS 8192
 
-// Alpha masks (shaders/voxelize/alpha_mask.glsl, voxelizer/exact_mask.h). Texture coordinates are rounded to
+// Alpha masks (shaders/voxelize/alpha_mask.glsl, voxelizer/surface/exact_mask.h). Texture coordinates are rounded to
 // 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a texel when a mask is read.
 #define TEXCOORD_UNITS 67108864.0
 #define TEXCOORD_LIMIT 1048576.0

@@ -2,7 +2,7 @@
 // exact on every driver. The definition in few lines is voxelizer/exact_mask.h.
 //
 //     int mask_decide(MaskedTriangle m, ivec3 voxel, int shift)     MASK_SURFACE, MASK_EMPTY, or MASK_UNDECIDED: of what
-//                                                                   is left to voxelizer/exact_mask.h
+//                                                                   is left to voxelizer/surface/exact_mask.h
 //     MaskedTriangle masked_triangle(uint triangle)
 //     bool mask_touches(uint triangle, ivec3 voxel, int shift)      the same in one step, where undecided means yes
 //

@@ -1,4 +1,4 @@
-// The surface as voxelizer/surface.h uploads it (one chunk is bound at a time).
+// The surface as voxelizer/surface/surface.h uploads it (one chunk is bound at a time).
 #include "interop/bindings.h"
 #include "interop/config.h"
 #include "interop/types.h"

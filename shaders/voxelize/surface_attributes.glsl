@@ -1,4 +1,4 @@
-// What a surface carries beside its shape (voxelizer/surface.h): an attribute block a vertex, and all texels.
+// What a surface carries beside its shape (voxelizer/surface/surface.h): an attribute block a vertex, and all texels.
 #include "interop/bindings.h"
 #include "interop/types.h"
 

@@ -10,8 +10,8 @@
 #include "renderer/renderer.h"
 #include "scenes/builtin.h"
 #include "scenes/snapshot.h"
-#include "voxelizer/surface.h"
-#include "voxelizer/conservative_voxelizer.h"
+#include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/surface/surface.h"
 
 int main() {
     try {

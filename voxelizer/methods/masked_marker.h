@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "gl/buffer.h"
+#include "gl/program.h"
+#include "voxelizer/grid.h"
+#include "voxelizer/surface/surface.h"
+
+namespace cairn::voxelizer {
+
+/// A voxel of the root cube, and a triangle of a chunk whose mask decides about it.
+struct MaskCandidate {
+    glm::ivec3 voxel;
+    std::int32_t triangle;
+};
+
+/// Marks the queued triangles that an alpha mask cuts: one pass lists the voxels that they meet, a second
+/// looks at the texels, one thread a voxel, because the work for a voxel varies a thousandfold.
+class MaskedMarker {
+public:
+    explicit MaskedMarker(const gl::ShaderSource& shaders);
+
+    /// Bits, queue and surface are bound. @return what the shader left to the CPU.
+    [[nodiscard]] std::vector<MaskCandidate> mark(const Region& region, unsigned queue, unsigned count);
+
+private:
+    /// Some triangles of a queue, and of each so many rows of its bounding box.
+    struct Work {
+        unsigned first, count;
+        unsigned first_row, last_row;
+    };
+    /// How the buffer of candidates begins (shaders/voxelize/candidates.glsl).
+    struct Header {
+        std::uint32_t listed, undecided;
+    };
+    [[nodiscard]] Header header() const;
+    [[nodiscard]] unsigned list(const Region& region, unsigned queue, const Work& work);
+    void decide(unsigned count, std::vector<MaskCandidate>& undecided);
+
+    gl::Program list_;
+    gl::Program decide_;
+    gl::Buffer candidates_;
+    std::vector<Work> waiting_;
+};
+
+/// Which candidates are surface, on the CPU. Reads the triangles back from the driver.
+[[nodiscard]] std::vector<glm::ivec3> decide_on_cpu(const std::vector<MaskCandidate>& candidates,
+                                                    const GpuSurface& surface, std::size_t chunk,
+                                                    const Region& region);
+
+/// Gives a program that includes voxelize/bits.glsl its region.
+void set_region(const gl::Program& program, const Region& region);
+
+}  // namespace cairn::voxelizer

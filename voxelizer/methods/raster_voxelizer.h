@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+
+#include "gl/handle.h"
+#include "gl/program.h"
+#include "shaders/interop/config.h"
+#include "voxelizer/methods/raster_tiles.h"
+#include "voxelizer/methods/slice_targets.h"
+#include "voxelizer/methods/voxelizer.h"
+
+namespace cairn::voxelizer {
+
+/// How a primitive finds its layer.
+enum class LayerPath : std::uint8_t {
+    geometry_shader,  ///< OpenGL 4.5 alone
+    vertex_shader     ///< ARB_shader_viewport_layer_array, and storage buffers in vertex shaders
+};
+
+/// Voxelizes by rasterization into one bit a slice: the methods of Forest et al. 2009, section 2, to compare
+/// with. None of them is exact (`cairn check` counts how far off they are).
+///
+/// `slice_map` looks along z alone, as Eisemann and Décoret 2006: a fragment marks the voxel at its pixel's
+/// centre. Surfaces steep to z have holes, and what is parallel to z vanishes.
+///
+/// `three_axis` looks along x, y and z and joins the three: surfaces have no gaps that a path through voxel
+/// faces could pass, but are thin: of the voxels that a triangle touches, those stay empty in whose pixels it
+/// covers no centre. What is smaller than a voxel may vanish.
+///
+/// `three_axis_conservative` draws each triangle in the direction that sees it most squarely, enlarged to all
+/// pixels that it touches (Hasselgren et al. 2005), and marks all slices that its plane meets in the pixel.
+/// It misses nothing; it marks voxels beside edges that touch the triangle in this projection and not in the
+/// others.
+///
+/// All of them: segments and points are GL's lines and points, which leave out the pixel that a line ends in
+/// (enlarged like triangles in the conservative one). Alpha masks are decided at the pixel's centre, or the
+/// triangle's nearest point, so that even the conservative method can miss a voxel whose only visible texel
+/// lies elsewhere. A face in the region's far end belongs to the region's last voxel. Far triangles
+/// (Surface::far_triangles) are cut to the lattice's range first, to the nearest lattice point. Lines to
+/// points more than 2^16 voxels away bend by the driver's rounding. What lies within a float's rounding of a
+/// boundary may fall to another side in another region.
+///
+/// Memory: targets of one bit a voxel and direction, at most RASTER_TARGET_MIB at a time, and 16 MiB of
+/// lists.
+class RasterVoxelizer final : public Voxelizer {
+public:
+    /// @param method  one of the three above
+    /// @throws Error  Fault::context: the driver cannot take the path that was asked for.
+    explicit RasterVoxelizer(Method method, const gl::ShaderSource& shaders = {},
+                             LayerPath path = LayerPath::geometry_shader);
+
+    /// Whether the current driver offers LayerPath::vertex_shader.
+    [[nodiscard]] static bool has_vertex_path();
+
+private:
+    using Counts = std::array<std::uint32_t, RASTER_KINDS>;
+
+    void mark(const GpuSurface& surface, const Region& region, std::span<const ChunkPart> parts,
+              gl::Buffer& bits) override;
+    void draw_chunk(const gl::Buffer& positions, const RasterTile& tile, const ChunkPart& part, bool masked);
+    /// How many primitives of each kind there are.
+    [[nodiscard]] Counts list_batch(const RasterTile& tile, std::size_t first, std::size_t count,
+                                    bool has_subset);
+    void draw_list(unsigned kind, unsigned count, const RasterTile& tile, bool masked);
+    void unite(const Region& region, const RasterTile& tile);
+    [[nodiscard]] const gl::Program& program(unsigned kind, bool cover, bool masked);
+    [[nodiscard]] bool is_conservative() const { return method_ == Method::three_axis_conservative; }
+    [[nodiscard]] int directions() const { return method_ == Method::slice_map ? 1 : 3; }
+
+    Method method_;
+    bool vertex_path_;
+    gl::Program list_;
+    gl::Program unite_along_x_;
+    gl::Program unite_;                                                      ///< along y and z
+    std::map<std::tuple<unsigned, bool, bool, int>, gl::Program> programs_;  ///< kind, cover, masked, targets
+    SliceTargets targets_;
+    gl::Buffer lists_;
+    gl::VertexArrayHandle vertex_array_;
+};
+
+}  // namespace cairn::voxelizer

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "voxelizer/bit_grid.h"
+#include "voxelizer/grid.h"
+#include "voxelizer/solid/row_crossings.h"
+#include "voxelizer/surface/surface.h"
+
+namespace cairn::voxelizer {
+
+/// The inside of closed meshes, exactly: the voxels whose centre the surface winds around. A solid is these
+/// bits together with the surface's own. Runs on the CPU, on all cores.
+///
+/// A row of voxels along x crosses the surface a number of times; the signs of the crossings up to a centre
+/// add up to its winding number, and inside is where it is not 0. So overlapping shells give their union, a
+/// shell within another of the same orientation stays solid, one of the opposite orientation is a cavity, and
+/// it does not matter whether a whole shell is inside out. Lines, points, and triangles that an alpha mask
+/// cuts take no part.
+///
+/// A mesh is closed when each edge is used as often in one direction as in the other. Then rows along any
+/// axis say the same. Else rows along all three axes vote. One whose signs do not add up to 0 is *doubtful*:
+/// it runs through a hole, across an open sheet, or across faces that are turned against their neighbours.
+/// A voxel is inside only
+///   - where two of the rows through it are not doubtful and wind around it, or
+///   - where all three say inside, those in doubt by parity: an even number of crossings in all, an odd
+///     number before the voxel.
+/// So an open sheet fills nothing, nor do two that face each other, and a hole does not leak across the grid:
+/// at most what lies straight before it, along two axes, stays empty. A box without a lid is filled. Faces
+/// that are turned around in part of a closed mesh are mended where rows along other axes avoid them, or by
+/// parity; where rows come out whole by chance, because as many faces are turned one way as the other, gaps
+/// between parts may be filled.
+///
+/// Build the surface with SurfaceOptions::outside, or a grid that cuts through the scene (--bounds) has
+/// doubtful rows that are none.
+class SolidFill {
+public:
+    static constexpr std::size_t default_memory_bytes = std::size_t(1) << 30;
+
+    /// @param whole         the region that all tiles lie in
+    /// @param memory_bytes  what the crossings may take: 4 bytes a row, and 4 a crossing of rows that
+    ///                      are crossed an even number of times
+    /// @throws Error (Fault::memory) before they take more; says what would fit.
+    SolidFill(const Surface& surface, const Region& whole, std::size_t memory_bytes = default_memory_bytes);
+
+    /// Sets the bits of voxels that are inside.
+    /// @param tile_origin  voxel of the root cube, as Region::origin; the tile lies within `whole`
+    /// @throws Error (Fault::usage) when it does not.
+    void add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const;
+
+    /// Whether the mesh is closed. Decided by a sum of hashes over its edges, of 128 bits.
+    [[nodiscard]] bool closed() const { return !along_y_; }
+    /// Rows that are doubtful, along all three axes, and of how many.
+    [[nodiscard]] std::uint64_t doubtful_rows() const { return doubtful_rows_; }
+    [[nodiscard]] std::uint64_t row_count() const;
+    [[nodiscard]] std::size_t size_bytes() const;
+
+private:
+    /// @param low  of the tile, from the region's low corner
+    void fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const;
+    void vote_on_slice(const glm::ivec3& low, int z, BitGrid& tile) const;
+
+    Region whole_;
+    RowCrossings along_x_;
+    std::optional<RowCrossings> along_y_, along_z_;  ///< of a mesh that is not closed
+    std::uint64_t doubtful_rows_ = 0;
+};
+
+}  // namespace cairn::voxelizer
