@@ -7,7 +7,7 @@
 #include "app/verbs.h"
 #include "app/volume_input.h"
 #include "base/error.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 
 namespace cairn::app {
 namespace {

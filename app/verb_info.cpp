@@ -11,7 +11,7 @@
 #include "app/scene_input.h"
 #include "app/verbs.h"
 #include "app/volume_input.h"
-#include "scenes/volume.h"
+#include "scenes/volume/volume.h"
 
 namespace cairn::app {
 namespace {

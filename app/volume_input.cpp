@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "renderer/produce/dense_field.h"
 #include "renderer/produce/made_fields.h"
-#include "scenes/volume.h"
+#include "scenes/volume/volume.h"
 
 namespace cairn::app {
 namespace {

@@ -21,7 +21,7 @@
 #include <sys/wait.h>
 
 #include "base/error.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/load.h"
 
 namespace {

@@ -14,7 +14,7 @@
 #include "renderer/produce/volume_content.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
-#include "scenes/volume.h"
+#include "scenes/volume/volume.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::bench {

@@ -20,7 +20,7 @@
 #include "renderer/produce/volume_field.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
-#include "scenes/volume.h"
+#include "scenes/volume/volume.h"
 
 namespace cairn::renderer {
 

@@ -1,6 +1,6 @@
 #include "scenes/load.h"
 
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/gltf/read_gltf.h"
 
 namespace cairn::scenes {

@@ -1,4 +1,4 @@
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include "app/viewer/refinement.h"
 #include "renderer/produce/batch_pace.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
 #include "tests/gl_fixture.h"
 

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "renderer/pool/brick_cache.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
 #include "tests/gl_fixture.h"
 #include "tests/lattice_surface.h"

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
 #include "tests/gl_fixture.h"
 #include "tests/test_scenes.h"

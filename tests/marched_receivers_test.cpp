@@ -9,7 +9,7 @@
 
 #include "reference/image.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/transform.h"
 #include "tests/gl_fixture.h"
 #include "tests/test_scenes.h"

@@ -8,7 +8,7 @@
 #include "reference/view.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "shaders/interop/config.h"
 #include "tests/gl_fixture.h"
 #include "tests/mesh_mix_pictures.h"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/image.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "shaders/interop/config.h"
 #include "tests/gl_fixture.h"
 #include "tests/mesh_mix_pictures.h"

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/image.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/load.h"
 #include "shaders/interop/config.h"
 #include "tests/gl_fixture.h"

@@ -18,7 +18,7 @@
 #include "reference/shadow_truth.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/ground.h"
 #include "scenes/load.h"
 #include "tests/gl_fixture.h"

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "tests/gl_fixture.h"
 #include "tests/square_over_floor.h"
 

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "tests/gl_fixture.h"
 #include "tests/mesh_rays.h"
 #include "tests/test_scenes.h"

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "reference/light_cache.h"
 #include "reference/view.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "tests/scratch_folder.h"
 
 namespace cairn::reference {

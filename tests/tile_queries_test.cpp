@@ -13,7 +13,7 @@
 #include "renderer/produce/fractal_content.h"
 #include "renderer/produce/surface_content.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
 #include "shaders/interop/bindings.h"
 #include "tests/gl_fixture.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/produce/tile_lists.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
 #include "tests/lattice_surface.h"
 

@@ -12,7 +12,7 @@
 #include <zlib.h>
 
 #include "base/error.h"
-#include "scenes/volume.h"
+#include "scenes/volume/volume.h"
 #include "tests/scratch_folder.h"
 
 namespace cairn::test {

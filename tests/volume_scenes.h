@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/renderer.h"
-#include "scenes/volume.h"
+#include "scenes/volume/volume.h"
 
 /// Volumes for tests, and how pictures of them are compared.
 namespace cairn::test {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "renderer/produce/volume_field.h"
-#include "scenes/volume.h"
+#include "scenes/volume/volume.h"
 
 namespace cairn::renderer {
 

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "gl/context.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
 #include "voxelizer/surface/surface.h"

@@ -1,4 +1,4 @@
-#include "scenes/volume_reader.h"
+#include "scenes/volume/reader.h"
 
 #include <algorithm>
 #include <bit>

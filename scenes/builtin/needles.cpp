@@ -1,4 +1,4 @@
-#include "scenes/builtin_generators.h"
+#include "scenes/builtin/generators.h"
 
 namespace cairn::scenes {
 

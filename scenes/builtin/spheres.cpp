@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "scenes/builtin_generators.h"
+#include "scenes/builtin/generators.h"
 
 // "A cubic form composed of 9x9 spheres", 6,848 polygons (Forest et al. 2009, Figure 5a). The paper says no
 // more. Here it is nine groups of nine, each a cube's corners and its centre: 80 spheres of 84 triangles, and

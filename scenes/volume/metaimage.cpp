@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "scenes/volume_reader.h"
+#include "scenes/volume/reader.h"
 
 namespace cairn::scenes::volume {
 namespace {

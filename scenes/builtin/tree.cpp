@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenes/builtin_generators.h"
+#include "scenes/builtin/generators.h"
 
 // A tree of the size of Forest et al. 2009, Figure 5c (607,608 polygons): a trunk, three orders of branches
 // as tapered tubes, and leaves on the last order. How many of each is fixed; the random stream only moves

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <span>
 
-#include "scenes/builtin_generators.h"
+#include "scenes/builtin/generators.h"
 
 // The Cornell box as measured by the Cornell University Program of Computer Graphics ("Cornell Box Data",
 // 1998). Positions are the published ones; colours are the usual RGB stand-ins for the published spectra.

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenes/builtin_generators.h"
+#include "scenes/builtin/generators.h"
 
 namespace cairn::scenes {
 namespace {

@@ -1,11 +1,11 @@
-#include "scenes/builtin.h"
+#include "scenes/builtin/builtin.h"
 
 #include <array>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "scenes/builtin_generators.h"
+#include "scenes/builtin/generators.h"
 
 namespace cairn::scenes {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/volume.h"
+#include "scenes/volume/volume.h"
 
 /// What the readers of volume files share; not for use outside scenes/.
 namespace cairn::scenes::volume {

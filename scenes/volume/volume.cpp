@@ -1,9 +1,9 @@
-#include "scenes/volume.h"
+#include "scenes/volume/volume.h"
 
 #include <algorithm>
 #include <cctype>
 
-#include "scenes/volume_reader.h"
+#include "scenes/volume/reader.h"
 
 namespace cairn::scenes {
 namespace {
