@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "app/exit_code.h"
-#include "app/terminal.h"
-#include "app/verbs.h"
-#include "app/volume_input.h"
+#include "app/subject/volume_input.h"
+#include "app/terminal/exit_code.h"
+#include "app/terminal/terminal.h"
+#include "app/verbs/verbs.h"
 #include "base/error.h"
 #include "scenes/builtin/builtin.h"
 

@@ -6,7 +6,7 @@
 
 namespace cairn {
 
-/// Whose fault it is. The command turns it into its exit code (app/exit_code.h).
+/// Whose fault it is. The command turns it into its exit code (app/terminal/exit_code.h).
 enum class Fault {
     usage,        ///< the caller asked for something that cannot be
     input,        ///< a file is damaged, missing or asks for what is not supported

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "app/view_options.h"
+#include "app/options/view_options.h"
 #include "app/viewer/viewer.h"
 #include "base/error.h"
 #include "renderer/renderer.h"

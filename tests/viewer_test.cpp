@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "app/view_options.h"
+#include "app/options/view_options.h"
 #include "app/viewer/fly_camera.h"
 #include "app/viewer/orbit_camera.h"
 #include "app/viewer/pace.h"

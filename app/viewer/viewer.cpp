@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 
-#include "app/view_options.h"
+#include "app/options/view_options.h"
 
 namespace cairn::app {
 namespace {

@@ -1,0 +1,94 @@
+#include "app/options/parse.h"
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace cairn::app {
+namespace {
+
+/// The largest side of a viewport that OpenGL 4.5 promises.
+constexpr int max_image_side = 16384;
+
+template <typename Number>
+std::optional<Number> read_whole(std::string_view text) {
+    Number value{};
+    const char* const end = text.data() + text.size();
+    const auto [stop, failed] = std::from_chars(text.data(), end, value);
+    if (failed != std::errc() || stop != end || text.empty()) return std::nullopt;
+    return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (std::size_t start = 0; start <= text.size();) {
+        const std::size_t end = std::min(text.find(separator, start), text.size());
+        parts.push_back(text.substr(start, end - start));
+        start = end + 1;
+    }
+    return parts;
+}
+
+}  // namespace
+
+int parse_int(std::string_view option, std::string_view text, int low, int high) {
+    const std::optional<long long> value = read_whole<long long>(text);
+    if (!value || *value < low || *value > high) {
+        throw Error(Fault::usage, std::string(option),
+                    fmt::format("\"{}\" is not a whole number from {} to {}", text, low, high));
+    }
+    return int(*value);
+}
+
+double parse_number(std::string_view option, std::string_view text) {
+    const std::optional<double> value = read_whole<double>(text);
+    if (!value) throw Error(Fault::usage, std::string(option), fmt::format("\"{}\" is not a number", text));
+    if (!std::isfinite(*value)) {
+        throw Error(Fault::usage, std::string(option), fmt::format("\"{}\" is not finite", text));
+    }
+    return *value;
+}
+
+std::vector<double> parse_numbers(std::string_view option, std::string_view text, std::size_t least,
+                                  std::size_t most) {
+    const std::vector<std::string_view> parts = split(text, ',');
+    if (parts.size() < least || parts.size() > most) {
+        const std::string wanted =
+            least == most ? std::to_string(least) : fmt::format("{} or {}", least, most);
+        throw Error(Fault::usage, std::string(option),
+                    fmt::format("\"{}\" has {} of the {} numbers it needs", text, parts.size(), wanted),
+                    "write them with commas and no spaces: 1,2.5,-3");
+    }
+    std::vector<double> numbers;
+    for (const std::string_view part : parts)
+        numbers.push_back(parse_number(option, part));
+    return numbers;
+}
+
+glm::ivec3 parse_axes(std::string_view option, std::string_view text, int low, int high) {
+    const std::vector<std::string_view> parts = split(text, ',');
+    if (parts.size() != 1 && parts.size() != 3) {
+        throw Error(Fault::usage, std::string(option),
+                    fmt::format("\"{}\" has {} numbers, not 1 or 3", text, parts.size()),
+                    "write one for a cube, or three with commas and no spaces: 640,480,512");
+    }
+    glm::ivec3 axes(parse_int(option, parts[0], low, high));
+    for (int axis = 1; parts.size() == 3 && axis < 3; ++axis)
+        axes[axis] = parse_int(option, parts[std::size_t(axis)], low, high);
+    return axes;
+}
+
+std::pair<int, int> parse_size(std::string_view option, std::string_view text) {
+    const std::vector<std::string_view> parts = split(text, 'x');
+    if (parts.size() != 2) {
+        throw Error(Fault::usage, std::string(option), fmt::format("\"{}\" is not WIDTHxHEIGHT", text),
+                    "for example 1024x768");
+    }
+    return {parse_int(option, parts[0], 1, max_image_side), parse_int(option, parts[1], 1, max_image_side)};
+}
+
+}  // namespace cairn::app

@@ -1,0 +1,84 @@
+#include "app/options/transfer_option.h"
+
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "app/options/parse.h"
+#include "base/error.h"
+
+namespace cairn::app {
+namespace {
+
+constexpr const char* option = "--transfer";
+
+struct Named {
+    std::string_view name;
+    std::string_view points;
+};
+
+// Colours are linear.
+constexpr std::array named = {
+    // For volumes that nothing is known of: what is denser than a tenth of the range, ever more opaque.
+    Named{"solid", "0.1:0.75,0.7,0.62:0;0.3:0.75,0.7,0.62:0.5;1:0.95,0.92,0.85:2"},
+    // Scans with contrast for bones: soft parts as a haze.
+    Named{"bone", "0.08:0.5,0.08,0.04:0;0.25:0.6,0.15,0.08:0.015;0.4:0.85,0.7,0.5:0.4;1:1,0.97,0.9:3"},
+    // Everything, thin: brighter where it is denser.
+    Named{"haze", "0.02:0.1,0.25,0.6:0;0.5:0.5,0.6,0.8:0.01;1:1,0.95,0.85:0.06"},
+    // Each density as opaque as it is great.
+    Named{"opaque", "0:0.8,0.75,0.7:0;1:0.8,0.75,0.7:4"},
+};
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (;;) {
+        const std::size_t end = text.find(separator);
+        parts.push_back(text.substr(0, end));
+        if (end == std::string_view::npos) return parts;
+        text.remove_prefix(end + 1);
+    }
+}
+
+}  // namespace
+
+std::string transfer_names() {
+    std::string names;
+    for (const Named& entry : named)
+        names += (names.empty() ? "" : ", ") + std::string(entry.name);
+    return names;
+}
+
+renderer::TransferFunction TransferChoice::for_voxels(double voxel_size) const {
+    std::vector<renderer::ControlPoint> in_world = points;
+    for (renderer::ControlPoint& point : in_world)
+        point.extinction /= voxel_size;
+    return renderer::TransferFunction(in_world);
+}
+
+TransferChoice parse_transfer(const std::string& text) {
+    std::string_view points = text;
+    for (const Named& entry : named) {
+        if (text == entry.name) points = entry.points;
+    }
+    if (points.find(':') == std::string_view::npos) {
+        throw Error(
+            Fault::usage, option, fmt::format("there is no \"{}\"", text),
+            fmt::format("choose {}, or give points such as \"0.2:1,1,1:0;1:1,1,1:0.5\"", transfer_names()));
+    }
+    TransferChoice choice{text, {}};
+    for (const std::string_view point : split(points, ';')) {
+        const std::vector<std::string_view> parts = split(point, ':');
+        if (parts.size() != 3) {
+            throw Error(Fault::usage, option, fmt::format("\"{}\" is not DENSITY:R,G,B:EXTINCTION", point),
+                        "for instance 0.5:1,0.9,0.8:0.2");
+        }
+        const std::vector<double> color = parse_numbers(option, parts[1], 3, 3);
+        choice.points.push_back(
+            {parse_number(option, parts[0]), {color[0], color[1], color[2]}, parse_number(option, parts[2])});
+    }
+    (void)choice.for_voxels(1.0);  // refuses what is out of range
+    return choice;
+}
+
+}  // namespace cairn::app

@@ -1,0 +1,67 @@
+#include "app/subject/scene_input.h"
+
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "app/subject/volume_input.h"
+#include "app/terminal/progress.h"
+#include "app/terminal/terminal.h"
+#include "base/error.h"
+#include "scenes/ground.h"
+#include "scenes/load.h"
+
+namespace cairn::app {
+namespace {
+
+/// A name wins over an index, so that an animation called "1" can be reached.
+int animation_called(const scenes::Scene& scene, const std::string& name) {
+    std::string known;
+    for (std::size_t i = 0; i < scene.animations.size(); ++i) {
+        if (scene.animations[i].name == name) return int(i);
+        known += fmt::format("{}{} \"{}\"", i == 0 ? "" : ", ", i, scene.animations[i].name);
+    }
+    int index = -1;
+    const char* const end = name.data() + name.size();
+    const auto [stop, failed] = std::from_chars(name.data(), end, index);
+    if (failed == std::errc() && stop == end && index >= 0 && std::size_t(index) < scene.animations.size())
+        return index;
+    throw Error(Fault::usage, "--animation", fmt::format("{} has no animation \"{}\"", scene.name, name),
+                known.empty() ? "it has none at all" : "it has " + known);
+}
+
+}  // namespace
+
+SceneInput load_input(const SceneOptions& options, bool quiet) {
+    if (is_volume(options.scene))
+        throw Error(Fault::usage, options.scene, "this verb needs surfaces, and that is a volume",
+                    "\"cairn render\", \"cairn view\" and \"cairn info\" take volumes");
+    const Progress progress("loading", quiet);
+    SceneInput input{scenes::load(options.scene, {.trust_paths = options.trust_paths}), {}, {}};
+    scenes::When& when = input.when;
+    when.seconds = options.seconds.value_or(0.0);
+    when.scene_index = options.scene_index;
+    if (options.animation) {
+        when.animation = animation_called(input.scene, *options.animation);
+    } else if (options.seconds && !input.scene.animations.empty()) {
+        when.animation = 0;
+    }
+    if (!quiet) {
+        for (const std::string& warning : input.scene.warnings)
+            warn(warning);
+        if (options.seconds && !when.animation) warn("--time changes nothing: the scene has no animation");
+    }
+    input.snapshot = scenes::take_snapshot(input.scene, when);
+    return input;
+}
+
+void add_ground(SceneInput& input) {
+    constexpr double frames_per_second = 30.0;
+    const scenes::Bounds bounds =
+        input.when.animation ? scenes::bounds_over_animation(input.scene, input.when, frames_per_second)
+                             : input.snapshot.bounds;
+    scenes::add_ground(input.scene, bounds, input.when.scene_index);
+    input.snapshot = scenes::take_snapshot(input.scene, input.when);
+}
+
+}  // namespace cairn::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "app/options/options.h"
+
+namespace cairn::app {
+
+using Json = nlohmann::ordered_json;
+
+/// The figures of one run, each given once: the text on stdout and the JSON are made of the same entries, so
+/// that the one cannot show what the other hides.
+///
+/// The end of a key tells its unit: `..._ms` milliseconds, `..._bytes` bytes (shown as MiB in the text).
+class Report {
+public:
+    explicit Report(const ReportOptions& options) : options_(options) {}
+
+    void add(const std::string& key, Json value) { figures_[key] = std::move(value); }
+
+    /// Prints the text and writes the JSON. @throws Error (Fault::usage) when either cannot be written.
+    void finish() const;
+
+private:
+    ReportOptions options_;
+    Json figures_ = Json::object();
+};
+
+/// [x, y, z] of a glm vector.
+template <typename Vector>
+[[nodiscard]] Json json_of(const Vector& v) {
+    Json array = Json::array();
+    for (int i = 0; i < Vector::length(); ++i)
+        array.push_back(v[i]);
+    return array;
+}
+
+}  // namespace cairn::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <exception>
+#include <string>
+#include <string_view>
+
+#include "app/terminal/exit_code.h"
+
+namespace cairn::app {
+
+/// The text without control characters other than line breaks: names come from files, and a file must not
+/// drive the user's terminal.
+[[nodiscard]] std::string printable(std::string_view text);
+
+/// "warning: WHAT" on stderr.
+void warn(std::string_view what);
+
+/// "error: WHERE: WHAT" on stderr, and the way out on an indented second line.
+void print_error(std::string_view what, std::string_view way_out = {});
+
+/// Prints the error that is being handled. @return the exit code that it asks for.
+[[nodiscard]] ExitCode report_current_exception();
+
+}  // namespace cairn::app

@@ -1,0 +1,159 @@
+#include <filesystem>
+#include <thread>
+
+#include "app/options/parse.h"
+#include "app/terminal/driver.h"
+#include "app/terminal/progress.h"
+#include "app/terminal/report.h"
+#include "app/terminal/terminal.h"
+#include "app/verbs/verbs.h"
+#include "base/error.h"
+#ifdef CAIRN_BENCH
+#include "bench/chart.h"
+#endif
+
+namespace cairn::app {
+
+#ifdef CAIRN_BENCH
+namespace {
+
+constexpr int max_runs = 1000;
+constexpr int max_bench_resolution = 32768;
+
+struct Options {
+    std::string chart;
+    bench::ChartOptions what;
+    DriverOptions driver;
+    ReportOptions report;
+};
+
+std::string known_charts() {
+    std::string text;
+    for (const bench::ChartKind& kind : bench::charts())
+        text += (text.empty() ? "" : ", ") + std::string(kind.name);
+    return text;
+}
+
+const bench::ChartKind& chart_named(const std::string& name) {
+    for (const bench::ChartKind& kind : bench::charts())
+        if (kind.name == name) return kind;
+    throw Error(Fault::usage, "bench", "there is no chart \"" + name + "\"",
+                "choose one of: " + known_charts());
+}
+
+std::vector<int> sizes_of(const std::string& text) {
+    std::vector<int> sizes;
+    for (const double size : parse_numbers("--resolutions", text, 1, 16)) {
+        if (size < 1 || size > max_bench_resolution || size != int(size)) {
+            throw Error(Fault::usage, "--resolutions",
+                        "\"" + text + "\" is not a list of whole numbers from 1 to " +
+                            std::to_string(max_bench_resolution));
+        }
+        sizes.push_back(int(size));
+    }
+    return sizes;
+}
+
+void add_options(CLI::App& verb, Options& options) {
+    std::string charts;
+    for (const bench::ChartKind& kind : bench::charts())
+        charts += "\n" + std::string(kind.name) + ": " + std::string(kind.description);
+    verb.add_option("CHART", options.chart, "what to measure:" + charts)->required()->type_name("");
+    verb.add_option("-o,--output", options.what.folder,
+                    "the folder for the CSV and the picture (default: this one)")
+        ->type_name("DIR");
+    add_parsed_option(verb, "--scenes", "DIR", "where the real scenes lie (stanford_bunny_69k.glb)",
+                      [&options](const std::string& text) {
+                          if (!std::filesystem::is_directory(text))
+                              throw Error(Fault::usage, "--scenes", "\"" + text + "\" is not a folder");
+                          options.what.scene_folder = text;
+                      });
+    verb.add_option("--scene", options.what.scenes, "only this scene; may be given again")
+        ->type_name("SCENE")
+        ->allow_extra_args(false);
+    add_parsed_option(verb, "--resolutions", "N,...", "voxels a side, or pixels (default: the chart's own)",
+                      [&options](const std::string& text) { options.what.resolutions = sizes_of(text); });
+    add_parsed_option(
+        verb, "--runs", "N", "medians are of so many runs, or fewer if slow (default: 7)",
+        [&options](const std::string& text) { options.what.runs = parse_int("--runs", text, 1, max_runs); });
+    verb.add_option_function<std::string>(
+            "--truth-cache", [&options](const std::string& text) { options.what.truth_cache = text; },
+            "keeps what Embree found of soft lights in this folder,\nand takes it from there")
+        ->type_name("DIR");
+    add_driver_options(verb, options.driver);
+    add_report_options(verb, options.report);
+}
+
+Json json_of_cell(const bench::Cell& cell) {
+    if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+    if (const auto* whole = std::get_if<std::int64_t>(&cell)) return *whole;
+    return std::get<double>(cell);
+}
+
+Json json_of_table(const bench::Table& table) {
+    Json rows = Json::array();
+    for (const std::vector<bench::Cell>& row : table.rows) {
+        Json object = Json::object();
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            // The driver is the same everywhere, and told once.
+            const std::string& column = table.columns[i];
+            if (column == "driver" || column == "threads" || row[i].index() == 0) continue;
+            object[column == "ms" ? "milliseconds" : column] = json_of_cell(row[i]);
+        }
+        rows.push_back(std::move(object));
+    }
+    return rows;
+}
+
+ExitCode run(const Options& options) {
+    const bench::ChartKind& kind = chart_named(options.chart);
+    Report report(options.report);
+    const Driver driver(options.driver);
+    bench::Chart chart;
+    {
+        Progress progress("measuring", options.report.quiet);
+        bench::ChartOptions what = options.what;
+        what.shaders = options.driver.shaders;
+        what.progress = [&progress](double done) { progress.set(done); };
+        chart = kind.draw(what);
+    }
+    driver.check();
+    if (!options.report.quiet) {
+        for (const std::string& note : chart.notes)
+            warn(note);
+    }
+    report.add("measurements", json_of_table(chart.table));
+    Json files = Json::array();
+    for (const std::filesystem::path& file : chart.files)
+        files.push_back(file.string());
+    report.add("output", std::move(files));
+    report.add("threads", std::thread::hardware_concurrency());
+    report.add("driver", driver.name());
+    report.add("backend", driver.backend());
+    report.finish();
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& command, Work& chosen) {
+    add_verb<Options>(command, chosen, "bench", "Measure speed and accuracy: a CSV and a picture",
+                      add_options, run);
+}
+
+#else
+
+void add_bench(CLI::App& command, Work& chosen) {
+    CLI::App& verb = *command.add_subcommand("bench", "Measure speed and accuracy (not in this build)");
+    verb.allow_extras();
+    verb.callback([&chosen] {
+        chosen = []() -> ExitCode {
+            throw Error(Fault::usage, "bench", "this cairn was built without its benchmarks",
+                        "configure with -DCAIRN_BENCH=ON and build again");
+        };
+    });
+}
+
+#endif
+
+}  // namespace cairn::app

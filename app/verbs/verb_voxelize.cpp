@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/terminal/interrupt.h"
+#include "app/terminal/measure.h"
+#include "app/terminal/progress.h"
+#include "app/terminal/report.h"
+#include "app/verbs/verbs.h"
+#include "app/verbs/voxelization.h"
+#include "base/error.h"
+#include "voxelizer/files/voxel_files.h"
+#include "voxelizer/files/write_npy.h"
+
+namespace cairn::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+    VoxelizationOptions voxelization;
+    std::optional<fs::path> output;
+    bool solid = false;
+    bool plain = false;
+};
+
+void add_options(CLI::App& verb, Options& options) {
+    add_output_option(verb, options.output, voxelizer::voxel_file_endings(),
+                      fmt::format("write the voxels, as the ending says:\n{};\n.npy holds uint8 of shape "
+                                  "(X, Y, Z), a[x, y, z],\n1 = occupied",
+                                  fmt::join(voxelizer::voxel_file_endings(), ", ")));
+    add_parsed_option(verb, "--fill", "NAME",
+                      "surface: only voxels that the surface touches (default);\nsolid: what closed parts "
+                      "enclose, too",
+                      [&options](const std::string& name) {
+                          if (name != "surface" && name != "solid")
+                              throw Error(Fault::usage, "--fill", fmt::format("there is no \"{}\"", name),
+                                          "choose surface or solid");
+                          options.solid = name == "solid";
+                      });
+    verb.add_flag("--plain", options.plain, "no colours and no normals in the file: much faster");
+    add_voxelization_options(verb, options.voxelization);
+}
+
+/// A .npy holds every voxel, empty or not: whether it can be is known before any work.
+void check_room(const fs::path& path, const voxelizer::Grid& grid) {
+    std::string ending = path.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    if (is_device(path) || ending != ".npy") return;
+    const glm::dvec3 voxels(grid.resolution);
+    const double needed = voxels.x * voxels.y * voxels.z;
+    std::error_code unknown;
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    const fs::space_info room = fs::space(folder, unknown);
+    if (unknown || needed <= double(room.available)) return;
+    throw Error(
+        Fault::memory, path.string(),
+        fmt::format("a byte for each of {} x {} x {} voxels takes {:.1f} GiB, and {:.1f} GiB are free",
+                    grid.resolution.x, grid.resolution.y, grid.resolution.z, needed / 0x1p30,
+                    double(room.available) / 0x1p30),
+        "choose a format that leaves out what is empty (.vdb), or fewer voxels");
+}
+
+std::unique_ptr<voxelizer::VoxelWriter> make_writer(const fs::path& path, const voxelizer::Grid& grid) {
+    check_room(path, grid);
+    // A device needs no ending: it gets what numpy reads.
+    if (is_device(path) && !path.has_extension()) return voxelizer::make_npy_writer(path, grid);
+    return voxelizer::make_voxel_writer(path, grid);
+}
+
+/// @return milliseconds spent on writing
+double voxelize(Voxelization& voxelization, voxelizer::VoxelWriter* writer, bool quiet) {
+    double write_ms = 0.0;
+    {
+        Progress progress("voxelizing", quiet);
+        voxelization.run(
+            [&](voxelizer::VoxelTile&& tile) {
+                if (writer == nullptr) return;
+                Stopwatch watch;
+                writer->add(tile);
+                write_ms += watch.lap_ms();
+            },
+            [&progress](double share) {
+                progress.set(share);
+                return true;
+            });
+    }
+    if (writer == nullptr) return write_ms;
+    const Progress progress("writing", quiet);
+    Stopwatch watch;
+    writer->finish();
+    return write_ms + watch.lap_ms();
+}
+
+ExitCode run(const Options& options) {
+    Report report(options.voxelization.common.report);
+    GriddedInput scene = load_gridded(options.voxelization);
+    const Interrupt interrupt;  // before there is a file to clean up
+    std::unique_ptr<voxelizer::VoxelWriter> writer;
+    if (options.output) writer = make_writer(*options.output, scene.grid);
+    Voxelization voxelization(
+        options.voxelization, std::move(scene),
+        {.attributes = writer && writer->wants_attributes() && !options.plain, .solid = options.solid});
+    const double write_ms = voxelize(voxelization, writer.get(), options.voxelization.common.report.quiet);
+    voxelization.report(report);
+    if (options.output) {
+        report.add("write_ms", write_ms);
+        report.add("output", options.output->string());
+    }
+    report.add("peak_rss_bytes", peak_rss_bytes());
+    report.finish();
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_voxelize(CLI::App& command, Work& chosen) {
+    add_verb<Options>(command, chosen, "voxelize", "Mark every voxel that the surface touches, on the GPU",
+                      add_options, run);
+}
+
+}  // namespace cairn::app

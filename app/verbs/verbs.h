@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "app/terminal/exit_code.h"
+
+namespace cairn::app {
+
+/// What is left to do when the command line has been read.
+using Work = std::function<ExitCode()>;
+
+/// Each teaches one verb to the command, and sets `chosen` when the command line names it.
+void add_info(CLI::App& command, Work& chosen);
+void add_voxelize(CLI::App& command, Work& chosen);
+void add_check(CLI::App& command, Work& chosen);
+void add_render(CLI::App& command, Work& chosen);
+void add_view(CLI::App& command, Work& chosen);
+void add_export(CLI::App& command, Work& chosen);
+void add_shadow(CLI::App& command, Work& chosen);
+void add_bench(CLI::App& command, Work& chosen);
+
+/// Adds a verb whose options are an `Options`, and whose work is `run(options)`.
+template <typename Options>
+void add_verb(CLI::App& command, Work& chosen, const char* name, const char* description,
+              void (*add_options)(CLI::App&, Options&), ExitCode (*run)(const Options&)) {
+    CLI::App& verb = *command.add_subcommand(name, description);
+    const auto options = std::make_shared<Options>();
+    add_options(verb, *options);
+    verb.callback([&chosen, options, run] { chosen = [options, run] { return run(*options); }; });
+}
+
+}  // namespace cairn::app

@@ -1,0 +1,116 @@
+#include "app/verbs/voxelization.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/terminal/interrupt.h"
+#include "app/terminal/measure.h"
+#include "app/terminal/progress.h"
+#include "app/terminal/terminal.h"
+#include "voxelizer/solid/solid_tiles.h"
+
+namespace cairn::app {
+
+void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options) {
+    add_grid_options(verb, options.grid);
+    add_parsed_option(
+        verb, "--method", "NAME", "conservative, slice-map, three-axis, three-axis-conservative",
+        [&options](const std::string& name) { options.method = voxelizer::method_named(name); });
+    add_common_options(verb, options.common);
+}
+
+GriddedInput load_gridded(const VoxelizationOptions& options) {
+    check_grid_options(options.grid);
+    Stopwatch watch;
+    GriddedInput out{load_input(options.common.scene, options.common.report.quiet), {}, 0.0};
+    out.grid = make_grid(options.grid, out.input.snapshot.bounds);
+    out.load_ms = watch.lap_ms();
+    return out;
+}
+
+Voxelization::Voxelization(const VoxelizationOptions& options, GriddedInput scene, const Needs& needs)
+    : options_(options), grid_(scene.grid), load_ms_(scene.load_ms) {
+    const Progress progress("preparing", options.common.report.quiet);
+    Stopwatch watch;
+    surface_ = voxelizer::build_surface(scene.input.scene, scene.input.snapshot, grid_,
+                                        {.attributes = needs.attributes, .outside = needs.solid});
+    scene.input = {};  // what follows needs the memory
+    triangle_count_ = surface_->triangle_count;
+    index_.emplace(*surface_);
+    surface_ms_ = watch.lap_ms();
+    if (needs.solid) build_fill();
+    fill_ms_ = watch.lap_ms();
+    driver_.emplace(options.common.driver);
+    context_ms_ = watch.lap_ms();
+    on_gpu_ = voxelizer::upload(*surface_);
+    upload_ms_ = watch.lap_ms();
+    if (!needs.surface) surface_.reset();
+    voxelizer_ = voxelizer::make_voxelizer(options.method, options.common.driver.shaders);
+    if (needs.attributes) attributes_.emplace(options.common.driver.shaders);
+}
+
+void Voxelization::build_fill() {
+    fill_.emplace(*surface_, voxelizer::whole(grid_));
+    if (fill_->doubtful_rows() == 0 || options_.common.report.quiet) return;
+    warn(
+        fmt::format("the surface is not closed, or not turned one way, along {} of {} rows of voxels: there "
+                    "only what rows along other axes agree on was filled",
+                    fill_->doubtful_rows(), fill_->row_count()));
+}
+
+void Voxelization::add_attributes(voxelizer::VoxelTile& tile) {
+    if (!attributes_) return;
+    Stopwatch watch;
+    const voxelizer::Region region{grid_.level(), tile.origin, tile.bits.size};
+    tile.attributes = attributes_->gather(on_gpu_, region, tile.bits, index_->triangles_in(region));
+    attributes_ms_ += watch.lap_ms();
+}
+
+void Voxelization::run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress) {
+    voxelizer::TileSink with_attributes = [&](voxelizer::VoxelTile&& tile) {
+        add_attributes(tile);
+        sink(std::move(tile));
+    };
+    std::optional<voxelizer::SolidTiles> solid;
+    if (fill_) solid.emplace(*fill_, grid_, with_attributes);
+    statistics_ = voxelizer::voxelize_tiles(
+        *voxelizer_, on_gpu_, *index_, grid_,
+        solid ? [&](voxelizer::VoxelTile&& tile) { solid->add(std::move(tile)); } : with_attributes,
+        [&progress](double share) { return !Interrupt::asked() && progress(share); }, {.warm_up = true});
+    if (solid) {
+        solid->finish();
+        statistics_.occupied = solid->occupied();
+    }
+    driver_->check();
+}
+
+void Voxelization::report(Report& report) const {
+    report.add("scene", options_.common.scene.scene);
+    report.add("triangles", triangle_count_);
+    report.add("resolution", resolution_of(grid_));
+    report.add("origin", json_of(grid_.origin));
+    report.add("voxel_size", grid_.voxel_size);
+    report.add("method", std::string(voxelizer::name_of(options_.method)));
+    report.add("occupied", statistics_.occupied);
+    report.add("milliseconds", statistics_.milliseconds);
+    report.add("regions", statistics_.regions);
+    if (fill_) {
+        report.add("fill_ms", fill_ms_);
+        report.add("doubtful_rows", fill_->doubtful_rows());
+    }
+    if (attributes_) report.add("attributes_ms", attributes_ms_);
+    report.add("load_ms", load_ms_);
+    report.add("surface_ms", surface_ms_);
+    report.add("context_ms", context_ms_);
+    report.add("upload_ms", upload_ms_);
+    report.add("driver", driver_->name());
+    report.add("backend", driver_->backend());
+}
+
+Json resolution_of(const voxelizer::Grid& grid) {
+    const glm::ivec3& r = grid.resolution;
+    return r.x == r.y && r.y == r.z ? Json(r.x) : json_of(r);
+}
+
+}  // namespace cairn::app

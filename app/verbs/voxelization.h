@@ -1,0 +1,83 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "app/options/options.h"
+#include "app/subject/scene_input.h"
+#include "app/terminal/driver.h"
+#include "app/terminal/report.h"
+#include "voxelizer/grid.h"
+#include "voxelizer/methods/voxel_attributes.h"
+#include "voxelizer/methods/voxelize_tiles.h"
+#include "voxelizer/methods/voxelizer.h"
+#include "voxelizer/solid/fill.h"
+#include "voxelizer/surface/surface.h"
+#include "voxelizer/surface/triangle_index.h"
+
+namespace cairn::app {
+
+/// What `cairn voxelize` and `cairn check` have in common.
+struct VoxelizationOptions {
+    CommonOptions common;
+    GridOptions grid;
+    voxelizer::Method method = voxelizer::Method::conservative;
+};
+void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options);
+
+/// A scene, and the grid to cut it with.
+struct GriddedInput {
+    SceneInput input;
+    voxelizer::Grid grid;
+    double load_ms = 0.0;
+};
+/// @throws Error  when it cannot be loaded, or the options make no grid; before anything is written.
+[[nodiscard]] GriddedInput load_gridded(const VoxelizationOptions& options);
+
+/// Voxelizes a scene on the GPU, tile by tile.
+class Voxelization {
+public:
+    struct Needs {
+        bool attributes = false;  ///< tiles come with colours and normals
+        bool surface = false;     ///< surface() when all is on the GPU
+        bool solid = false;       ///< what closed parts enclose, too
+    };
+    /// Frees the scene.
+    Voxelization(const VoxelizationOptions& options, GriddedInput scene, const Needs& needs);
+
+    [[nodiscard]] const voxelizer::Grid& grid() const { return grid_; }
+    [[nodiscard]] const voxelizer::Surface& surface() const { return *surface_; }
+
+    /// @throws Error (Fault::interrupted) when an Interrupt was asked for; what `sink` throws.
+    void run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress);
+
+    /// What both verbs say: the grid, what is occupied, times and driver.
+    void report(Report& report) const;
+
+private:
+    void add_attributes(voxelizer::VoxelTile& tile);
+    void build_fill();
+
+    VoxelizationOptions options_;
+    voxelizer::Grid grid_;
+    double load_ms_ = 0.0;
+    double surface_ms_ = 0.0;
+    double context_ms_ = 0.0;
+    double upload_ms_ = 0.0;
+    std::optional<voxelizer::Surface> surface_;
+    std::uint64_t triangle_count_ = 0;
+    std::optional<voxelizer::SolidFill> fill_;
+    double fill_ms_ = 0.0;
+    std::optional<voxelizer::TriangleIndex> index_;
+    std::optional<Driver> driver_;
+    voxelizer::GpuSurface on_gpu_;
+    std::unique_ptr<voxelizer::Voxelizer> voxelizer_;
+    std::optional<voxelizer::AttributeVoxelizer> attributes_;
+    double attributes_ms_ = 0.0;
+    voxelizer::TileStatistics statistics_;
+};
+
+/// "resolution": one number for a cube, else three.
+[[nodiscard]] Json resolution_of(const voxelizer::Grid& grid);
+
+}  // namespace cairn::app
