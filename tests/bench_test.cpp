@@ -2,8 +2,8 @@
 // is slow.
 #include <gtest/gtest.h>
 
-#include "bench/cpu_row_span.h"
-#include "bench/table.h"
+#include "bench/peers/cpu_row_span.h"
+#include "bench/plots/table.h"
 #include "reference/exact_voxels.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"

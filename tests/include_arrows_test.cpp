@@ -52,7 +52,7 @@ const std::vector<Folder> folders = {
     {"renderer/", {"renderer/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/"}, false},
     {"app/",
      {"app/", "renderer/", "reference/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/",
-      "bench/chart.h"}},
+      "bench/charts/chart.h"}},
     {"tests/", {""}},
     {"bench/", {""}},
 };

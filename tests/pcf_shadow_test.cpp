@@ -1,5 +1,5 @@
 // The shadow map with percentage-closer filtering that the charts measure beside: against closed forms.
-#include "bench/pcf_shadow.h"
+#include "bench/peers/pcf_shadow.h"
 
 #include <cmath>
 

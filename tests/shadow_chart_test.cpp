@@ -5,9 +5,9 @@
 #include <set>
 #include <sstream>
 
-#include "bench/chart.h"
-#include "bench/shadow_runs.h"
-#include "bench/shadow_scene.h"
+#include "bench/charts/chart.h"
+#include "bench/trials/shadow_runs.h"
+#include "bench/trials/shadow_scene.h"
 #include "reference/shadow_truth.h"
 #include "shaders/interop/config.h"
 #include "tests/gl_fixture.h"

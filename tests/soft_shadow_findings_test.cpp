@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/soft_shadow_study.h"
+#include "bench/trials/soft_shadow_study.h"
 #include "reference/image.h"
 #include "tests/gl_fixture.h"
 #include "tests/soft_shadow_scene.h"

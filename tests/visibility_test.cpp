@@ -1,4 +1,4 @@
-// Occlusion queries as a way to decide what to produce (bench/occlusion_queries.h): against rays, which
+// Occlusion queries as a way to decide what to produce (bench/peers/occlusion_queries.h): against rays, which
 // decide it exactly, and the tests of boxes against exact rays through the pixels.
 #include <cmath>
 #include <functional>
@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "bench/box_tests.h"
-#include "bench/frames.h"
-#include "bench/occlusion_queries.h"
-#include "bench/view_tiles.h"
+#include "bench/peers/box_tests.h"
+#include "bench/peers/occlusion_queries.h"
+#include "bench/peers/view_tiles.h"
+#include "bench/trials/frames.h"
 #include "renderer/marched_view.h"
 #include "tests/gl_fixture.h"
 

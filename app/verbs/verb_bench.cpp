@@ -9,7 +9,7 @@
 #include "app/verbs/verbs.h"
 #include "base/error.h"
 #ifdef CAIRN_BENCH
-#include "bench/chart.h"
+#include "bench/charts/chart.h"
 #endif
 
 namespace cairn::app {

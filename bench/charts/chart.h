@@ -1,0 +1,97 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/plots/table.h"
+#include "gl/shader_source.h"
+
+namespace cairn::bench {
+
+struct ChartOptions {
+    std::filesystem::path folder = ".";  ///< where the files go; made if need be
+    /// Paths and builtin:NAMEs; empty: the chart's own choice.
+    std::vector<std::string> scenes;
+    /// Where to look for the real scenes among the chart's own choice; none: they are left out.
+    std::optional<std::filesystem::path> scene_folder;
+    std::vector<int> resolutions;  ///< voxels a side, or pixels; empty: the chart's own choice
+    /// Pixels from left to right, where `resolutions` are voxels; none: the chart's own choice.
+    std::optional<int> width;
+    int runs = 7;               ///< of each contender, in turn; at least 1
+    double budget_ms = 3000.0;  ///< a contender is not run again once it has taken so long at one size
+    /// Keeps what Embree found of soft lights, which takes long; none: found anew.
+    std::optional<std::filesystem::path> truth_cache;
+    gl::ShaderSource shaders;
+    std::function<void(double)> progress;  ///< called with the share done, in [0, 1]; may be empty
+};
+
+struct Chart {
+    Table table;
+    std::vector<std::filesystem::path> files;  ///< written
+    std::vector<std::string> notes;            ///< what was left out, and why
+};
+
+/// A measurement by its name, "voxelize" for instance.
+struct ChartKind {
+    std::string_view name;
+    std::string_view description;
+    Chart (*draw)(const ChartOptions& options);
+};
+[[nodiscard]] std::span<const ChartKind> charts();
+
+/// Every voxelization method and its peers, by time and by error against the exact voxels: voxelize.csv and
+/// voxelize.png. Needs a current context. @throws Error as loading, voxelizing and writing do.
+[[nodiscard]] Chart chart_voxelize(const ChartOptions& options);
+
+/// Converged frames with hard shadows beside Embree's and NanoVDB's rays: embree.csv. Needs a current
+/// context.
+[[nodiscard]] Chart chart_embree(const ChartOptions& options);
+
+/// Converged frames by time and by error against Embree with 64 samples a pixel: render.csv and render.png.
+/// Needs a current context, as the others do.
+[[nodiscard]] Chart chart_render(const ChartOptions& options);
+
+/// The same view of ever more voxels: resolution.csv.
+[[nodiscard]] Chart chart_resolution(const ChartOptions& options);
+
+/// Crassin 2007, Figures 3.24 and 3.26: structure.csv.
+[[nodiscard]] Chart chart_structure(const ChartOptions& options);
+
+/// Crassin et al. 2008, Figure 7: exploration.csv.
+[[nodiscard]] Chart chart_exploration(const ChartOptions& options);
+
+/// What first frames produce, and what of it is used: production.csv.
+[[nodiscard]] Chart chart_production(const ChartOptions& options);
+
+/// Animated scenes with soft shadows through pyramids built for each frame: moving_shadow.csv.
+[[nodiscard]] Chart chart_moving_shadow(const ChartOptions& options);
+
+/// Atty et al. 2005, sections 4.2 and 5.2: soft_shadow_map.csv and soft_shadow_map.png.
+[[nodiscard]] Chart chart_soft_shadow_map(const ChartOptions& options);
+
+/// What rays, occlusion queries (Crassin 2007, section 3.6) and the frustum alone have produced for the same
+/// views: visibility.csv.
+[[nodiscard]] Chart chart_visibility(const ChartOptions& options);
+
+/// Shadows of a hard and of a soft light by every method there is, by time and by error against Embree:
+/// shadow.csv and shadow.png.
+[[nodiscard]] Chart chart_shadow(const ChartOptions& options);
+
+/// Forest et al. 2009, Tables 2 and 3: shadow_rays.csv.
+[[nodiscard]] Chart chart_shadow_rays(const ChartOptions& options);
+
+/// Writes `folder`/`name`, and adds it to the chart's files.
+void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+                const std::string& text);
+
+/// Draws the chart's table as `folder`/`name`, or notes why it cannot.
+/// @param script_of  the gnuplot script of a table's picture, to be written there
+void write_picture(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+                   std::string (*script_of)(const Table&, const std::filesystem::path&));
+
+}  // namespace cairn::bench

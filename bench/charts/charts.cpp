@@ -1,0 +1,51 @@
+#include <array>
+
+#include "base/error.h"
+#include "base/output_file.h"
+#include "bench/charts/chart.h"
+#include "bench/plots/gnuplot.h"
+
+namespace cairn::bench {
+
+std::span<const ChartKind> charts() {
+    static constexpr std::array all = {
+        ChartKind{"voxelize", "methods and their peers, by time and error", chart_voxelize},
+        ChartKind{"embree", "frames with shadows beside Embree's and NanoVDB's rays", chart_embree},
+        ChartKind{"render", "frames by time and error, over pixel error and tree", chart_render},
+        ChartKind{"resolution", "the same view of 512^3 to 32768^3 voxels", chart_resolution},
+        ChartKind{"structure", "N and M, and a regular grid, on a hollow sphere", chart_structure},
+        ChartKind{"exploration", "frames at three distances, and on the way there", chart_exploration},
+        ChartKind{"moving-shadow", "animated scenes with soft shadows, by frame", chart_moving_shadow},
+        ChartKind{"shadow", "shadows by time and error, over every method", chart_shadow},
+        ChartKind{"shadow-rays", "shadow rays by their number and by resolution", chart_shadow_rays},
+        ChartKind{"production", "bricks that a first frame produces, and uses", chart_production},
+        ChartKind{"soft-shadow-map", "error and time of soft shadow maps", chart_soft_shadow_map},
+        ChartKind{"visibility", "bricks produced: rays, occlusion queries, frustum", chart_visibility},
+    };
+    return all;
+}
+
+void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+                const std::string& text) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (failed) throw Error(Fault::usage, folder.string(), failed.message(), "choose a folder to write to");
+    const std::filesystem::path path = folder / name;
+    OutputFile file(path);
+    file.write(text.data(), text.size());
+    file.commit();
+    chart.files.push_back(path);
+}
+
+void write_picture(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+                   std::string (*script_of)(const Table&, const std::filesystem::path&)) {
+    const std::filesystem::path path = folder / name;
+    const std::string failure = run_gnuplot(script_of(chart.table, path), folder);
+    if (failure.empty()) {
+        chart.files.push_back(path);
+    } else {
+        chart.notes.push_back("no picture: " + failure);
+    }
+}
+
+}  // namespace cairn::bench

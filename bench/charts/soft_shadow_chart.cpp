@@ -1,0 +1,295 @@
+// Atty et al. 2005, sections 4.2 and 5.2: the error of soft shadow maps over the size of the occluder map,
+// the size of the light, and where the occluder is; their time over polygons, map and light; and appendix A,
+// what the sums are kept in.
+#include <array>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "bench/charts/chart.h"
+#include "bench/plots/soft_shadow_plot.h"
+#include "bench/trials/frames.h"
+#include "bench/trials/real_scenes.h"
+#include "bench/trials/samples.h"
+#include "bench/trials/soft_shadow_study.h"
+
+namespace cairn::bench {
+namespace {
+
+using renderer::ShadowFormat;
+using renderer::ShadowMesh;
+using renderer::ShadowPasses;
+using renderer::SoftShadowMap;
+
+constexpr int own_base = 128;         // texels a side of the occluder map, where it is not what varies
+constexpr int most_points = 48;       // a side
+constexpr double trial_ms = 200.0;    // no further run of a trial once it has taken so long
+constexpr double base_light = 0.5;    // wide
+constexpr double closest_gap = 0.02;  // to the light, of the way that the occluder can rise
+
+constexpr std::array own_sizes = {16, 24, 32, 48, 64, 96, 128, 160, 200, 256, 320, 512};
+constexpr std::array own_format_sizes = {64, 128, 256, 512};
+constexpr std::array light_widths = {0.01, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0};
+constexpr std::array laterals = {-1.5, -1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0, 1.5};
+constexpr std::array rises = {0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.87, 1.0 - closest_gap};
+constexpr std::array polygon_counts = {2.0, 2e3, 16e3, 64e3, 128e3, 256e3, 512e3};
+
+struct Plan {
+    explicit Plan(const ChartOptions& options) : runs(options.runs) {
+        sizes = options.resolutions;
+        format_sizes = sizes;
+        if (sizes.empty()) {
+            sizes.assign(own_sizes.begin(), own_sizes.end());
+            format_sizes.assign(own_format_sizes.begin(), own_format_sizes.end());
+        }
+        base = sizes.front();
+        for (const int size : sizes)
+            if (std::abs(size - own_base) < std::abs(base - own_base)) base = size;
+        receiver_size = study_step * std::min(most_points, base);
+    }
+    std::vector<int> sizes, format_sizes;
+    int base = own_base;
+    int receiver_size = 0;
+    int runs = 1;
+};
+
+/// A placement with its truth.
+struct Case {
+    Case(const ShadowOccluder& occluder, const ShadowPlacement& placement) : setting(occluder, placement) {}
+    ShadowSetting setting;
+    ShadowPoints points;
+    std::vector<double> truth;
+};
+
+struct Trial {
+    double parameter = 0.0;
+    const Case* placed = nullptr;
+    int occluder_size = 0;
+    ShadowPasses passes = ShadowPasses::two;
+    ShadowFormat format = ShadowFormat::fp32;
+    StudyWindow window = StudyWindow::fitted;
+    const ShadowMesh* mesh = nullptr;  ///< none: the occluder's own
+    SoftShadowErrors errors{};
+    renderer::SoftShadowStatistics statistics{};
+    std::vector<double> samples_ms{};
+};
+
+const char* name_of(ShadowFormat format) {
+    switch (format) {
+        case ShadowFormat::fp16:
+            return "fp16";
+        case ShadowFormat::fp16_batches:
+            return "fp16-batches";
+        case ShadowFormat::fp32:
+            break;
+    }
+    return "fp32";
+}
+
+class OccluderStudies {
+public:
+    OccluderStudies(const ShadowOccluder& occluder, const Plan& plan, const ChartOptions& options,
+                    Chart& chart)
+        : occluder_(occluder),
+          plan_(plan),
+          options_(options),
+          chart_(chart),
+          tracer_(occluder.scene(), occluder.snapshot()),
+          mesh_(occluder.scene(), occluder.snapshot()),
+          base_(placed({base_light, 0.0, occluder.own_gap()})) {}
+
+    using Step = void (OccluderStudies::*)();
+    static constexpr std::array<Step, 6> steps() {
+        return {&OccluderStudies::over_sizes,    &OccluderStudies::over_lights,
+                &OccluderStudies::over_laterals, &OccluderStudies::over_heights,
+                &OccluderStudies::over_formats,  &OccluderStudies::over_polygons};
+    }
+    void run(Step step) { (this->*step)(); }
+
+private:
+    void over_sizes() {
+        std::vector<Trial> trials;
+        for (const int size : plan_.sizes)
+            add_ways(size, base_, size, trials);
+        measure("resolution", trials);
+    }
+
+    void over_lights() {
+        std::deque<Case> cases;
+        std::vector<Trial> trials;
+        for (const double width : light_widths) {
+            const Case& now = cases.emplace_back(placed({width, 0.0, occluder_.own_gap()}));
+            add_ways(width, now, plan_.base, trials);
+            for (const int size : {plan_.base / 2, plan_.base * 2})
+                if (size > 0 && size <= 2048)
+                    trials.push_back({.parameter = width, .placed = &now, .occluder_size = size});
+        }
+        measure("light-size", trials);
+    }
+
+    void over_laterals() {
+        std::deque<Case> cases;
+        std::vector<Trial> trials;
+        for (const double lateral : laterals)
+            add_ways(lateral, cases.emplace_back(placed({base_light, lateral, occluder_.own_gap()})),
+                     plan_.base, trials);
+        measure("lateral", trials);
+    }
+
+    void over_heights() {
+        std::deque<Case> cases;
+        std::vector<Trial> trials;
+        for (const double rise : rises) {
+            const double gap = rise * (study_light_height - occluder_.height());
+            add_ways(rise, cases.emplace_back(placed({base_light, 0.0, gap})), plan_.base, trials);
+        }
+        measure("vertical", trials);
+    }
+
+    void over_formats() {
+        std::vector<Trial> trials;
+        for (const int size : plan_.format_sizes) {
+            for (const ShadowFormat format :
+                 {ShadowFormat::fp16, ShadowFormat::fp16_batches, ShadowFormat::fp32})
+                trials.push_back({.parameter = double(size),
+                                  .placed = &base_,
+                                  .occluder_size = size,
+                                  .passes = ShadowPasses::one,
+                                  .format = format});
+        }
+        measure("format", trials);
+    }
+
+    /// The same shape, so the same shadow, of ever more triangles.
+    void over_polygons() {
+        const auto own = double(mesh_.triangle_count());
+        std::deque<ShadowMesh> meshes;
+        std::vector<Trial> trials;
+        int before = 0;
+        for (const double count : polygon_counts) {
+            const int parts = int(std::lround(std::sqrt(count / own)));
+            if (parts <= before) continue;
+            before = parts;
+            const ShadowOccluder finer = occluder_.cut(parts);
+            const ShadowMesh& mesh = meshes.emplace_back(finer.scene(), finer.snapshot());
+            trials.push_back({.parameter = double(mesh.triangle_count()),
+                              .placed = &base_,
+                              .occluder_size = plan_.base,
+                              .mesh = &mesh});
+        }
+        if (trials.empty())
+            trials.push_back({.parameter = own, .placed = &base_, .occluder_size = plan_.base});
+        measure("polygons", trials);
+    }
+
+    /// One and two passes, and one pass with the window of Atty et al.
+    static void add_ways(double parameter, const Case& now, int size, std::vector<Trial>& trials) {
+        for (const auto& [passes, window] : {std::pair(ShadowPasses::one, StudyWindow::fitted),
+                                             {ShadowPasses::two, StudyWindow::fitted},
+                                             {ShadowPasses::one, StudyWindow::shared}})
+            trials.push_back({.parameter = parameter,
+                              .placed = &now,
+                              .occluder_size = size,
+                              .passes = passes,
+                              .window = window});
+    }
+
+    Case placed(const ShadowPlacement& placement) {
+        Case out(occluder_, placement);
+        SoftShadowMap& map = map_of(plan_.base, ShadowPasses::one, ShadowFormat::fp32);
+        map.compute(out.setting.light(), out.setting.frustum(StudyWindow::fitted), mesh_,
+                    out.setting.floor());
+        out.points = shadow_points(map);
+        out.truth = truth_at(out.points, tracer_, out.setting.light());
+        return out;
+    }
+
+    SoftShadowMap& map_of(int size, ShadowPasses passes, ShadowFormat format) {
+        const auto key = std::tuple(size, passes, format);
+        auto found = maps_.find(key);
+        if (found == maps_.end())
+            found = maps_
+                        .emplace(key,
+                                 SoftShadowMap({size, plan_.receiver_size, passes, format}, options_.shaders))
+                        .first;
+        return found->second;
+    }
+
+    /// All in turn, so that ratios hold when the machine's speed drifts.
+    void measure(const char* study, std::vector<Trial>& trials) {
+        for (int run = 0; run < plan_.runs; ++run) {
+            for (Trial& trial : trials) {
+                double spent = 0.0;
+                for (const double ms : trial.samples_ms)
+                    spent += ms;
+                if (run > 0 && spent > trial_ms) continue;
+                SoftShadowMap& map = map_of(trial.occluder_size, trial.passes, trial.format);
+                const ShadowSetting& setting = trial.placed->setting;
+                map.compute(setting.light(), setting.frustum(trial.window),
+                            trial.mesh != nullptr ? *trial.mesh : mesh_, setting.floor());
+                trial.samples_ms.push_back(map.statistics().milliseconds);
+                if (run > 0) continue;
+                trial.statistics = map.statistics();
+                trial.errors = soft_shadow_errors(map.visible(), trial.placed->points, trial.placed->truth);
+            }
+        }
+        for (const Trial& trial : trials)
+            add_row(study, trial);
+    }
+
+    void add_row(const char* study, const Trial& trial) const {
+        const ShadowMesh& mesh = trial.mesh != nullptr ? *trial.mesh : mesh_;
+        chart_.table.rows.push_back(on_this_machine(
+            {occluder_.name(), std::string(study), trial.parameter, std::int64_t(trial.occluder_size),
+             std::int64_t(plan_.receiver_size), std::int64_t(trial.passes == ShadowPasses::two ? 2 : 1),
+             std::string(name_of(trial.format)),
+             std::string(trial.window == StudyWindow::shared ? "shared" : "fitted"),
+             trial.placed->setting.placement().light_width, std::int64_t(mesh.triangle_count()),
+             trial.errors.mean, trial.errors.rmse, trial.errors.greatest, std::int64_t(trial.errors.shadowed),
+             std::int64_t(trial.errors.wrong), median(trial.samples_ms),
+             std::int64_t(trial.statistics.micro_patches), std::int64_t(trial.statistics.fragments)}));
+    }
+
+    const ShadowOccluder& occluder_;
+    const Plan& plan_;
+    const ChartOptions& options_;
+    Chart& chart_;
+    reference::ImageTracer tracer_;
+    ShadowMesh mesh_;
+    std::map<std::tuple<int, ShadowPasses, ShadowFormat>, SoftShadowMap> maps_;
+    Case base_;
+};
+
+}  // namespace
+
+Chart chart_soft_shadow_map(const ChartOptions& options) {
+    Chart chart;
+    chart.table.columns = {"occluder", "study",         "parameter", "occluder_size", "receiver_size",
+                           "passes",   "format",        "window",    "light_width",   "triangles",
+                           "error",    "rmse",          "max_error", "points",        "wrong_points",
+                           "ms",       "micro_patches", "fragments", "driver",        "threads"};
+    std::vector<std::string> scenes = options.scenes;
+    if (scenes.empty()) {
+        scenes = {"builtin:square", "builtin:tree"};
+        add_real_scenes(chart, options, {"stanford_bunny_69k.glb"}, scenes);
+        if (scenes.size() < 3) scenes.emplace_back("builtin:knot");
+    }
+    const Plan plan(options);
+    double done = 0.0;
+    for (const std::string& path : scenes) {
+        const ShadowOccluder occluder(path);
+        OccluderStudies studies(occluder, plan, options, chart);
+        for (const auto step : OccluderStudies::steps()) {
+            studies.run(step);
+            done += 1.0 / double(scenes.size() * OccluderStudies::steps().size());
+            if (options.progress) options.progress(done);
+        }
+    }
+    write_file(chart, options.folder, "soft_shadow_map.csv", csv_of(chart.table));
+    write_picture(chart, options.folder, "soft_shadow_map.png", soft_shadow_plot);
+    return chart;
+}
+
+}  // namespace cairn::bench

@@ -1,0 +1,189 @@
+#include "bench/peers/occlusion_queries.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "base/error.h"
+#include "renderer/clock.h"
+#include "renderer/marched_view.h"
+#include "shaders/interop/config.h"
+
+namespace cairn::bench {
+
+using renderer::Clock;
+using renderer::milliseconds_since;
+using renderer::PassKind;
+
+namespace {
+
+constexpr std::size_t node_pool_bytes = std::size_t(32) << 20U;
+
+renderer::MarchKind saturating() {
+    renderer::MarchKind kind;
+    kind.primary = "bench/saturate.comp.glsl";
+    return kind;
+}
+
+interop::MarchView marched_view(const renderer::View& view, const renderer::Content& content,
+                                const renderer::TreeShape& shape) {
+    renderer::check(view, shape);
+    if (content.has_constant() || !content.channels().normal) {
+        throw Error(Fault::usage, "visibility", "a volume has no depth at which all rays end",
+                    "choose a scene of surfaces");
+    }
+    if (renderer::Marcher::band_rows(view.width, view.height) < view.height) {
+        throw Error(Fault::usage, "visibility", "the picture is too large to be marched at once",
+                    "choose fewer pixels");
+    }
+    renderer::View primary = view;
+    primary.shadow = renderer::Shadow::none;
+    interop::MarchView marched = renderer::march_view(primary, content.grid(), shape, nullptr);
+    marched.surface_color = glm::vec4(content.uniform_color(), 1.0F);
+    marched.band = glm::ivec4(0, view.height, SHOW_SURFACE, int(renderer::background_pixel(view.background)));
+    return marched;
+}
+
+}  // namespace
+
+std::size_t tiles_in_frustum(renderer::Content& content, const renderer::TreeShape& shape,
+                             const renderer::View& view) {
+    const ViewTest test(marched_view(view, content, shape), shape);
+    renderer::Tree tree(shape, 1, node_pool_bytes, content.oracle().child_mask(renderer::Tile{}));
+    return list_tiles(tree, content.oracle(), test).size();
+}
+
+VisibleBricks::VisibleBricks(std::unique_ptr<renderer::Content> content, const renderer::TreeShape& shape,
+                             const renderer::View& view, std::size_t brick_pool_bytes,
+                             const gl::ShaderSource& shaders)
+    : content_(std::move(content)),
+      view_(marched_view(view, *content_, shape)),
+      test_(view_, shape),
+      pool_(shape, content_->channels(), brick_pool_bytes),
+      tree_(shape, pool_.slot_count(), node_pool_bytes, content_->oracle().child_mask(renderer::Tile{})),
+      saturate_(shape, content_->has_color(), {}, shaders, saturating()),
+      picture_(shape, content_->has_color(), {}, shaders),
+      boxes_(view_, shaders) {
+    draw();  // once, so that no shader is compiled while the clock runs
+}
+
+void VisibleBricks::begin() {
+    tiles_ = list_tiles(tree_, content_->oracle(), test_);
+    tree_.upload();
+    result_.tiles_in_frustum = tiles_.size();
+    tree_.begin_round(++round_, std::vector<std::uint32_t>(std::size_t(pool_.slot_count()), 0));
+}
+
+void VisibleBricks::load(Tiles tiles) {
+    if (tiles.empty()) return;
+    std::vector<renderer::BrickRequest> requests;
+    for (const ViewTile& tile : tiles) {
+        const std::optional<int> slot = tree_.add_brick(tile.entry);
+        if (!slot) {
+            throw Error(Fault::usage, "brick pool", "it does not hold all bricks that are to be produced",
+                        "choose fewer pixels");
+        }
+        requests.push_back({tree_.tile(tile.entry), *slot});
+    }
+    const std::vector<renderer::Produced> found = content_->producer().produce(requests, pool_);
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (found[i].constant) tree_.set_constant(tiles[i].entry, found[i].mean);
+    tree_.upload();
+    result_.bricks_produced += requests.size();
+    ++result_.batches;
+}
+
+/// (Without new bricks, the picture is as it was.)
+void VisibleBricks::load_and_draw(Tiles tiles) {
+    load(tiles);
+    if (!tiles.empty()) draw();
+}
+
+/// Marches the picture through what is there, for the depths where its rays end.
+void VisibleBricks::draw() {
+    interop::MarchView view = view_;
+    view.band.w = 0;  // rays get through where nothing is
+    saturate_.begin_frame(view, tree_, pool_, false);
+    while (!saturate_.run_pass(++round_, tree_, pool_, PassKind::stand_in).done()) {
+    }
+    const std::vector<std::uint8_t> bytes = saturate_.read_image();
+    std::vector<float> inverse_depths(bytes.size() / sizeof(float));
+    std::memcpy(inverse_depths.data(), bytes.data(), bytes.size());
+    boxes_.set_depths(inverse_depths);
+}
+
+void VisibleBricks::test(Tiles tiles) {
+    std::vector<renderer::Box> boxes;
+    for (const ViewTile& tile : tiles)
+        boxes.push_back(test_.box_of(tree_.tile(tile.entry)));
+    result_.queries += boxes_.begin(boxes);
+}
+
+std::vector<ViewTile> VisibleBricks::visible_of(Tiles tested) const {
+    const std::vector<bool> visible = boxes_.visible();
+    std::vector<ViewTile> tiles;
+    for (std::size_t i = 0; i < tested.size(); ++i)
+        if (visible[i]) tiles.push_back(tested[i]);
+    return tiles;
+}
+
+/// The picture, and what its rays read and miss: the check that nothing visible was left out.
+void VisibleBricks::show() {
+    picture_.begin_frame(view_, tree_, pool_, false);
+    renderer::PassResult pass;
+    do {
+        pass = picture_.run_pass(++round_, tree_, pool_);
+    } while (!pass.done() && pass.queries.empty());
+    result_.missed = pass.queries.size();
+    for (const std::uint32_t stamp : pass.brick_stamps)
+        result_.bricks_used += stamp != 0 ? 1 : 0;
+    while (!pass.done())
+        pass = picture_.run_pass(++round_, tree_, pool_, PassKind::stand_in);
+    result_.image = {view_.size_shadow.x, view_.size_shadow.y, picture_.read_image()};
+}
+
+Visibility VisibleBricks::by_frustum() {
+    const auto start = Clock::now();
+    begin();
+    load(tiles_);
+    show();
+    result_.milliseconds = milliseconds_since(start);
+    return std::exchange(result_, {});
+}
+
+Visibility VisibleBricks::by_queries(const QuerySchedule& schedule) {
+    const auto start = Clock::now();
+    begin();
+    std::size_t next = 0;
+    auto take = [&](double count) {
+        const std::size_t taken = std::min(tiles_.size() - next, std::size_t(std::ceil(count)));
+        next += taken;
+        return Tiles(tiles_).subspan(next - taken, taken);
+    };
+    std::vector<ViewTile> to_load;
+    if (schedule.overlapped) {
+        const Tiles untested = take(schedule.tests * schedule.loads_a_test);
+        to_load.assign(untested.begin(), untested.end());
+    }
+    Tiles under_test = take(schedule.tests);
+    test(under_test);
+    while (!under_test.empty() || !to_load.empty()) {
+        if (schedule.overlapped) {
+            load_and_draw(to_load);
+            to_load = visible_of(under_test);
+        } else {
+            to_load = visible_of(under_test);
+            load_and_draw(to_load);
+            to_load.clear();
+        }
+        const double visible = double(to_load.size());
+        under_test = take(std::max(visible / schedule.loads_a_test, double(schedule.tests)));
+        test(under_test);
+    }
+    show();
+    result_.milliseconds = milliseconds_since(start);
+    return std::exchange(result_, {});
+}
+
+}  // namespace cairn::bench

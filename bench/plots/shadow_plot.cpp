@@ -1,0 +1,256 @@
+#include "bench/plots/shadow_plot.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "bench/plots/plot_style.h"
+
+namespace cairn::bench {
+namespace {
+
+struct Point {
+    std::string scene, light, receivers, series, setting;
+    double ms = 0.0;
+    double error = 0.0;
+};
+
+struct Style {
+    const char* color;
+    int point;
+    int dash;
+};
+/// Okabe and Ito's colours, told apart by all; a method keeps its colour.
+struct MethodColor {
+    const char* method;
+    const char* color;
+};
+constexpr std::array<MethodColor, 8> colors = {{{"voxel-rays", "#d55e00"},
+                                                {"voxel-cones", "#a0522d"},
+                                                {"pyramid", "#e69f00"},
+                                                {"soft-shadow-map", "#0072b2"},
+                                                {"pcf", "#888888"},
+                                                {"pcss", "#009e73"},
+                                                {"embree-single", "#000000"},
+                                                {"embree-packets", "#cc79a7"}}};
+constexpr std::array other_colors = {"#56b4e9"};
+constexpr std::array points_of_lines = {7, 5, 9, 11, 13, 15};
+
+struct Panel {
+    const char* light;
+    const char* receivers;
+    const char* title;
+};
+constexpr std::array<Panel, 4> panels = {{{"hard", "ground", "hard light, on the ground"},
+                                          {"hard", "all", "hard light, on all"},
+                                          {"soft", "ground", "soft light, on the ground"},
+                                          {"soft", "all", "soft light, on all"}}};
+
+template <typename T>
+std::size_t index_in(std::vector<T>& list, const T& value) {
+    const auto found = std::find(list.begin(), list.end(), value);
+    if (found != list.end()) return std::size_t(found - list.begin());
+    list.push_back(value);
+    return list.size() - 1;
+}
+
+class Plot {
+public:
+    explicit Plot(const Table& table) : table_(table) {
+        for (const std::vector<Cell>& row : table.rows) {
+            row_ = &row;
+            const std::string light = text("light");
+            const Point point{text("scene"),
+                              light,
+                              text("receivers"),
+                              series(),
+                              setting(),
+                              number("ms"),
+                              number(light == "hard" ? "hard_disagreement" : "rmse")};
+            (void)index_in(scenes_, point.scene);
+            points_.push_back(point);
+            driver_ = text("driver");
+            threads_ = std::get<std::int64_t>(cell("threads"));
+        }
+    }
+
+    [[nodiscard]] std::string script(const std::filesystem::path& picture) const {
+        const int key_rows = (int(series_.size()) + 4) / 5;
+        const int foot = 70 + 24 * key_rows;
+        const int height = 90 + foot + 470 * int(scenes_.size());
+        std::string out = fmt::format(
+            "set terminal pngcairo noenhanced size 2200,{} font \"sans,11\" background \"#ffffff\"\n"
+            "set output {}\n",
+            height, quoted(picture.string()));
+        out +=
+            fmt::format("set multiplot layout {},4 margins 0.035,0.99,{:.4f},{:.4f} spacing 0.035,{:.4f}\n",
+                        scenes_.size(), double(foot) / height, 1.0 - 90.0 / height, 85.0 / height);
+        out +=
+            label(1, "Shadows: time against error; down and to the left is better", 16, 1.0 - 22.0 / height);
+        out += label(2,
+                     fmt::format("{}, {} threads. Ring: no other is faster and more accurate. A point on the "
+                                 "bottom is exact",
+                                 driver_, threads_),
+                     11, 1.0 - 46.0 / height);
+        out +=
+            "set logscale xy\nset format x \"%g\"\nset format y \"%g\"\nset grid lc \"#e8e8e8\" lt 1\n"
+            "set border lc \"#888888\"\nset tics nomirror\n"
+            "set xlabel \"milliseconds\" offset 0,0.5\nunset key\n";
+        for (const std::string& scene : scenes_)
+            for (const Panel& panel : panels)
+                out += drawn(scene, panel);
+        return out + key(double(foot - 55) / height, key_rows) + "unset multiplot\n";
+    }
+
+private:
+    [[nodiscard]] const Cell& cell(const char* name) const {
+        const auto found = std::find(table_.columns.begin(), table_.columns.end(), name);
+        return (*row_)[std::size_t(found - table_.columns.begin())];
+    }
+    [[nodiscard]] std::string text(const char* name) const { return std::get<std::string>(cell(name)); }
+    [[nodiscard]] double number(const char* name) const { return std::get<double>(cell(name)); }
+
+    std::string series() {
+        const std::pair line(text("method"), text("varied"));
+        (void)index_in(series_, line);
+        return line.first + line.second;
+    }
+    /// What a label at a point says.
+    [[nodiscard]] std::string setting() const {
+        const auto whole = [&](const char* name) {
+            const Cell& value = cell(name);
+            return value.index() == 0 ? std::string() : std::to_string(std::get<std::int64_t>(value));
+        };
+        const std::string varied = text("varied");
+        if (varied.starts_with("resolution")) return whole("resolution") + "³";
+        if (varied == "taps") return whole("kernel") + "²";
+        if (varied == "format") return text("format");
+        for (const char* name : {"rays", "samples", "map_size"})
+            if (const std::string value = whole(name); !value.empty()) return value;
+        return {};
+    }
+
+    static std::string label(int number, const std::string& text, int size, double height) {
+        return fmt::format("set label {} {} at screen 0.5,{:.4f} center font \"sans,{}\"\n", number,
+                           quoted(text), height, size);
+    }
+
+    /// Lines of a method differ by their points.
+    [[nodiscard]] Style style_of(std::size_t series) const {
+        const std::string& method = series_[series].first;
+        int line = 0;
+        for (std::size_t i = 0; i < series; ++i)
+            line += series_[i].first == method ? 1 : 0;
+        const auto known = std::find_if(colors.begin(), colors.end(),
+                                        [&](const MethodColor& entry) { return method == entry.method; });
+        const char* const color =
+            known != colors.end() ? known->color : other_colors[series % other_colors.size()];
+        return {color, points_of_lines[std::size_t(line) % points_of_lines.size()], line + 1};
+    }
+
+    [[nodiscard]] std::vector<Point> points_in(const std::string& scene, const Panel& panel) const {
+        std::vector<Point> found;
+        for (const Point& point : points_)
+            if (point.scene == scene && point.light == panel.light && point.receivers == panel.receivers)
+                found.push_back(point);
+        return found;
+    }
+
+    static std::vector<Point> front_of(const std::vector<Point>& points) {
+        std::vector<Point> front;
+        for (const Point& point : points) {
+            const bool is_beaten = std::any_of(points.begin(), points.end(), [&](const Point& other) {
+                return other.ms <= point.ms && other.error <= point.error &&
+                       (other.ms < point.ms || other.error < point.error);
+            });
+            if (!is_beaten) front.push_back(point);
+        }
+        std::sort(front.begin(), front.end(), [](const Point& a, const Point& b) { return a.ms < b.ms; });
+        return front;
+    }
+
+    [[nodiscard]] std::string drawn(const std::string& scene, const Panel& panel) const {
+        const std::vector<Point> points = points_in(scene, panel);
+        if (points.empty()) return "set multiplot next\n";
+        // Exact results have no place on a logarithmic axis: they lie on its lowest line.
+        double least = 1.0;
+        double greatest = 1e-4;
+        double first = 1e30;
+        double last = 0.0;
+        for (const Point& point : points) {
+            if (point.error > 0.0) least = std::min(least, point.error);
+            greatest = std::max(greatest, point.error);
+            first = std::min(first, point.ms);
+            last = std::max(last, point.ms);
+        }
+        const double bottom = least / 1.6;
+        const auto place = [&](const Point& point) {
+            return fmt::format("{:.6g} {:.6g}", point.ms, std::max(point.error, bottom));
+        };
+        std::string blocks = "$front << EOD\n";
+        for (const Point& point : front_of(points))
+            blocks += fmt::format("{} {}\n", place(point), quoted(point.setting));
+        blocks += "EOD\n";
+        std::string plots = "plot $front using 1:2 with lines lw 5 lc \"#e0e0e0\" notitle";
+        for (std::size_t s = 0; s < series_.size(); ++s) {
+            std::string block;
+            for (const Point& point : points)
+                if (point.series == series_[s].first + series_[s].second) block += place(point) + "\n";
+            if (block.empty()) continue;
+            blocks += fmt::format("$s{} << EOD\n{}EOD\n", s, block);
+            const Style style = style_of(s);
+            plots +=
+                fmt::format(", $s{} using 1:2 with linespoints pt {} ps 1 lw 1.3 dt {} lc \"{}\" notitle", s,
+                            style.point, style.dash, style.color);
+        }
+        plots +=
+            ", $front using 1:2 with points pt 6 ps 2 lw 1.3 lc \"#000000\" notitle, $front using 1:2:3 with "
+            "labels offset 0,-0.9 font \"sans,8\" notitle\n";
+        std::string out = blocks;
+        out += fmt::format("set title {} offset 0,-0.6\nset ylabel {} offset 1.5,0\n",
+                           quoted(fmt::format("{}: {}", scene, panel.title)),
+                           quoted(std::string(panel.light) == "hard" ? "pixels on the wrong side" : "RMSE"));
+        out += fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", first / 1.4,
+                           last * 1.4, bottom, greatest * 1.3);
+        return out + plots + "unset label\n";
+    }
+
+    /// One for all panels, along the bottom.
+    [[nodiscard]] std::string key(double top, int rows) const {
+        std::string out =
+            "set size 1,1\nset origin 0,0\nset lmargin at screen 0\nset rmargin at screen 1\n"
+            "set bmargin at screen 0\nset tmargin at screen 0.01\n"
+            "unset border\nunset tics\nunset xlabel\nunset ylabel\nunset title\nunset grid\nunset logscale\n"
+            "set xrange [0:1]\nset yrange [0:1]\n";
+        out += fmt::format(
+            "set key at screen 0.97,{:.4f} right top horizontal Left reverse samplen 3 "
+            "maxrows {} font \"sans,11\"\nplot ",
+            top, rows);
+        for (std::size_t s = 0; s < series_.size(); ++s) {
+            const Style style = style_of(s);
+            out += fmt::format("{}NaN with linespoints pt {} ps 1 lw 1.3 dt {} lc \"{}\" title {}",
+                               s == 0 ? "" : ", ", style.point, style.dash, style.color,
+                               quoted(fmt::format("{}: {}", series_[s].first, series_[s].second)));
+        }
+        return out + "\n";
+    }
+
+    const Table& table_;
+    const std::vector<Cell>* row_ = nullptr;
+    std::vector<Point> points_;
+    std::vector<std::string> scenes_;
+    std::vector<std::pair<std::string, std::string>> series_;
+    std::string driver_;
+    std::int64_t threads_ = 0;
+};
+
+}  // namespace
+
+std::string shadow_plot(const Table& table, const std::filesystem::path& picture) {
+    return Plot(table).script(picture);
+}
+
+}  // namespace cairn::bench

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "bench/plots/table.h"
+
+namespace cairn::bench {
+
+/// The gnuplot script of the chart: a panel for each scene, time against error, both logarithmic, with a lane
+/// under the errors for none at all and one above for what finds no voxels. One line a method, through its
+/// resolutions. Points on the Pareto front of their resolution (no other is both faster and nearer to the
+/// truth) are ringed.
+///
+/// @param table    of chart_voxelize
+/// @param picture  the PNG to write
+[[nodiscard]] std::string voxelize_plot(const Table& table, const std::filesystem::path& picture);
+
+}  // namespace cairn::bench

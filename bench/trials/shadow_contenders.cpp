@@ -1,0 +1,256 @@
+#include "bench/trials/shadow_contenders.h"
+
+#include <array>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "bench/peers/pcf_shadow.h"
+#include "reference/area_light.h"
+#include "reference/view.h"
+#include "renderer/soft_shadow.h"
+
+namespace cairn::bench {
+namespace {
+
+using Contenders = std::vector<ShadowContender>;
+using Clock = std::chrono::steady_clock;
+using Rays = reference::ImageTracer::Rays;
+
+constexpr int own_resolution = 512;
+constexpr int own_rays = 16;
+constexpr std::array resolutions = {128, 256, 512, 1024, 2048};
+/// The next does not fit where a buffer holds 128 MiB of texels.
+constexpr std::array pyramid_resolutions = {128, 256, 512, 1024};
+/// A voxel a side. Surfaces grow with its square, but what a picture's rays meet of them more slowly; no
+/// frame should produce what the one before it had.
+constexpr std::size_t finest_pool_bytes = std::size_t(1) << 19U;
+constexpr std::array ray_counts = {1, 4, 16, 64, 256};
+constexpr std::array cone_counts = {1, 2, 4, 8, 16};
+constexpr int own_cones = 4;
+constexpr std::array map_sizes = {64, 128, 256, 512};
+constexpr int own_map_size = 256;
+constexpr std::array plain_map_sizes = {512, 1024, 2048, 4096};
+constexpr std::array strata = {1, 2, 3, 4, 6, 8, 16};
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Pools are made when they are first needed, and shared by all that goes through the same voxels.
+ShadowRun run_voxels(const ShadowTrial& trial, std::optional<int> resolution, const renderer::View& view) {
+    std::shared_ptr<renderer::Renderer>& kept = trial.voxels[resolution];
+    const bool is_first = kept == nullptr;
+    if (is_first) {
+        renderer::TreeOptions tree = resolution ? tree_of(*resolution) : renderer::TreeOptions{};
+        if (resolution) tree.brick_pool_bytes = finest_pool_bytes * std::size_t(*resolution);
+        kept = shadowing_renderer(trial.scene, tree, trial.options.shaders);
+    }
+    ShadowRun run = shadow_frame(*kept, view);
+    run.from_nothing = is_first;
+    return run;
+}
+
+void add_voxel_rays(const ShadowTrial& trial, Contenders& all) {
+    const auto add = [&](const char* varied, int rays, std::optional<int> resolution) {
+        renderer::View view = trial.scene.view(trial.width, trial.height, rays);
+        if (resolution) view.pixel_error = always_finest;
+        all.push_back({.method = "voxel-rays",
+                       .setting = {.varied = varied, .rays = rays, .resolution = resolution},
+                       .run = [&trial, resolution, view] { return run_voxels(trial, resolution, view); }});
+    };
+    for (const int resolution : resolutions)
+        add("resolution", trial.is_soft ? own_rays : 1, resolution);
+    if (!trial.is_soft) {
+        add("rays, by pixel", 1, std::nullopt);
+        return;
+    }
+    for (const int rays : ray_counts)
+        if (rays != own_rays) add("rays", rays, own_resolution);
+    for (const int rays : ray_counts)
+        add("rays, by pixel", rays, std::nullopt);
+}
+
+void add_voxel_cones(const ShadowTrial& trial, Contenders& all) {
+    if (!trial.is_soft) return;
+    const auto add = [&](const char* varied, int cones, int resolution) {
+        renderer::View view = trial.scene.view(trial.width, trial.height, cones);
+        view.shadow_cones = true;
+        view.pixel_error = always_finest;
+        all.push_back({.method = "voxel-cones",
+                       .setting = {.varied = varied, .rays = cones, .resolution = resolution},
+                       .run = [&trial, resolution, view] { return run_voxels(trial, resolution, view); }});
+    };
+    for (const int cones : cone_counts)
+        add("cones", cones, own_resolution);
+    for (const int resolution : resolutions)
+        if (resolution != own_resolution) add("resolution", own_cones, resolution);
+}
+
+void add_pyramid(const ShadowTrial& trial, Contenders& all) {
+    const auto made = std::make_shared<std::map<int, ShadowFrames>>();
+    const auto add = [&](const char* varied, int rays, int resolution) {
+        const renderer::View view = trial.scene.view(trial.width, trial.height, rays);
+        all.push_back({.method = "pyramid",
+                       .setting = {.varied = varied, .rays = rays, .resolution = resolution},
+                       .run = [&trial, made, resolution, view] {
+                           ShadowFrames& frames = (*made)[resolution];
+                           if (!frames)
+                               frames = pyramid_frames(trial.scene, {.resolution = resolution},
+                                                       trial.options.shaders);
+                           return frames(view);
+                       }});
+    };
+    for (const int resolution : pyramid_resolutions)
+        add("resolution", trial.is_soft ? own_rays : 1, resolution);
+    if (!trial.is_soft) return;
+    for (const int rays : ray_counts)
+        if (rays != own_rays) add("rays", rays, own_resolution);
+}
+
+const char* name_of(renderer::ShadowFormat format) {
+    switch (format) {
+        case renderer::ShadowFormat::fp16:
+            return "fp16";
+        case renderer::ShadowFormat::fp16_batches:
+            return "fp16-batches";
+        case renderer::ShadowFormat::fp32:
+            break;
+    }
+    return "fp32";
+}
+
+ShadowRun run_map(std::shared_ptr<renderer::SoftShadowRenderer>& made, const ShadowTrial& trial,
+                  const renderer::SoftShadowOptions& map) {
+    const ShadowScene& scene = trial.scene;
+    const bool is_first = made == nullptr;
+    if (is_first)
+        made =
+            std::make_shared<renderer::SoftShadowRenderer>(scene.scene(), scene.all(), scene.caster_nodes(),
+                                                           scene.ground_nodes(), map, trial.options.shaders);
+    renderer::SoftShadowView view;
+    view.width = trial.width;
+    view.height = trial.height;
+    view.camera = scene.view(trial.width, trial.height, 1).camera;
+    view.light = {scene.light().position, scene.light().half_u, scene.light().half_v};
+    renderer::SoftShadowPicture picture = made->render(view);
+    return {made->map().statistics().milliseconds, std::move(picture.visible), is_first, is_first};
+}
+
+void add_soft_shadow_maps(const ShadowTrial& trial, Contenders& all) {
+    if (!trial.is_soft) return;
+    const auto add = [&](const char* varied, const renderer::SoftShadowOptions& map) {
+        const bool is_one = map.passes == renderer::ShadowPasses::one;
+        all.push_back(
+            {.method = "soft-shadow-map",
+             .setting = {.varied = varied,
+                         .map_size = map.receiver_size,
+                         .passes = is_one ? "one" : "two",
+                         .format = name_of(map.format)},
+             .ground_only = true,
+             .run = [&trial, map, made = std::shared_ptr<renderer::SoftShadowRenderer>()]() mutable {
+                 return run_map(made, trial, map);
+             }});
+    };
+    for (const auto passes : {renderer::ShadowPasses::one, renderer::ShadowPasses::two}) {
+        const char* const varied =
+            passes == renderer::ShadowPasses::one ? "size, one pass" : "size, two passes";
+        for (const int size : map_sizes)
+            add(varied, {.occluder_size = size / 2, .receiver_size = size, .passes = passes});
+    }
+    for (const auto format : {renderer::ShadowFormat::fp16, renderer::ShadowFormat::fp16_batches})
+        add("format", {.occluder_size = own_map_size / 2, .receiver_size = own_map_size, .format = format});
+}
+
+struct FixedLine {
+    int kernel;
+    const char* varied;
+};
+constexpr std::array<FixedLine, 2> hard_lines = {{{1, "size, 1 tap"}, {3, "size, 3 x 3 taps"}}};
+constexpr std::array<FixedLine, 2> soft_lines = {{{3, "size, 3 x 3 taps"}, {7, "size, 7 x 7 taps"}}};
+
+void add_plain_maps(const ShadowTrial& trial, Contenders& all) {
+    const auto map = std::make_shared<std::unique_ptr<PcfShadow>>();
+    const auto add = [&](const char* method, const char* varied, const PcfOptions& options) {
+        all.push_back({.method = method,
+                       .setting = {.varied = varied, .map_size = options.map_size, .kernel = options.kernel},
+                       .is_ours = false,
+                       .run = [&trial, map, options, is_first = true]() mutable {
+                           if (!*map) {
+                               const ShadowScene& scene = trial.scene;
+                               *map = std::make_unique<PcfShadow>(scene.scene(), scene.all(), scene.casters(),
+                                                                  scene.light(), trial.receivers.points,
+                                                                  trial.receivers.normals);
+                           }
+                           PcfShadow::Result result = (*map)->shadow(options);
+                           const bool prepares = std::exchange(is_first, false);
+                           return ShadowRun{result.milliseconds, shares_of(trial.receivers, result.shares),
+                                            prepares, prepares};
+                       }});
+    };
+    for (const FixedLine& line : trial.is_soft ? soft_lines : hard_lines)
+        for (const int size : plain_map_sizes)
+            add("pcf", line.varied, {.map_size = size, .kernel = line.kernel});
+    if (!trial.is_soft) return;
+    for (const int size : plain_map_sizes)
+        add("pcss", "size, 5 x 5 taps", {.map_size = size, .filter = PcfFilter::penumbra, .kernel = 5});
+    for (const int kernel : {3, 8, 16})
+        add("pcss", "taps", {.map_size = 1024, .filter = PcfFilter::penumbra, .kernel = kernel});
+}
+
+/// A primary and a shadow ray a pixel: of a hard light it is the truth itself.
+ShadowRun run_embree_hard(const ShadowTrial& trial, Rays rays) {
+    const renderer::View view = trial.scene.view(trial.width, trial.height, 1);
+    const reference::ReferenceImage image =
+        trial.tracer.trace(reference::camera_of(view.camera), reference::light_of(view.light), trial.width,
+                           trial.height, 0, rays);
+    return {image.milliseconds, {image.lit.begin(), image.lit.end()}};
+}
+
+ShadowRun run_embree_soft(const ShadowTrial& trial, const reference::AreaLightOptions& options) {
+    const reference::AreaLight light =
+        reference::area_light_of(trial.scene.light(), trial.scene.all().bounds);
+    const auto start = Clock::now();
+    const auto found =
+        area_light_visibility(trial.tracer, trial.receivers.points, trial.receivers.normals, light, options);
+    const double ms = milliseconds_since(start);
+    std::vector<float> values;
+    values.reserve(found.size());
+    for (const reference::LightVisibility& point : found)
+        values.push_back(float(point.visible));
+    return {ms, shares_of(trial.receivers, values)};
+}
+
+void add_embree(const ShadowTrial& trial, Contenders& all) {
+    for (const Rays rays : {Rays::single, Rays::packets}) {
+        for (const int across : strata) {
+            if (!trial.is_soft && across > 1) break;
+            // A packet holds rays of one pixel.
+            if (trial.is_soft && across == 1 && rays == Rays::packets) continue;
+            reference::AreaLightOptions options;
+            options.exact_strata = across;
+            options.rays = rays;
+            all.push_back({.method = rays == Rays::single ? "embree-single" : "embree-packets",
+                           .setting = {.varied = "samples", .samples = across * across},
+                           .is_ours = false,
+                           .run = [&trial, options] {
+                               return trial.is_soft ? run_embree_soft(trial, options)
+                                                    : run_embree_hard(trial, options.rays);
+                           }});
+        }
+    }
+}
+
+}  // namespace
+
+std::vector<ShadowContender> shadow_contenders(const ShadowTrial& trial) {
+    constexpr std::array makers = {add_voxel_rays,       add_voxel_cones, add_pyramid,
+                                   add_soft_shadow_maps, add_plain_maps,  add_embree};
+    Contenders all;
+    for (const auto& add : makers)
+        add(trial, all);
+    return all;
+}
+
+}  // namespace cairn::bench
