@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "base/clock.h"
 #include "base/error.h"
-#include "renderer/clock.h"
 #include "renderer/marched_view.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/shadow/column_pyramid.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/clock.h"
+#include "base/clock.h"
 #include "renderer/kept_picture.h"
 #include "renderer/march/marcher.h"
 #include "renderer/march/windows.h"

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/clock.h"
 #include "base/error.h"
-#include "renderer/clock.h"
 #include "renderer/marched_view.h"
 #include "shaders/interop/config.h"
 
