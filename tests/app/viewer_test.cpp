@@ -21,9 +21,9 @@ namespace {
 using app::Command;
 using app::FlyCamera;
 using app::OrbitCamera;
-using renderer::Camera;
+using optics::Camera;
 
-const Camera from_the_front{.eye = {0.0, 0.0, 4.0}, .target = {0.0, 0.0, 0.0}};
+const optics::Camera from_the_front{.eye = {0.0, 0.0, 4.0}, .target = {0.0, 0.0, 0.0}};
 
 void expect_near(const glm::dvec3& ours, const glm::dvec3& expected) {
     EXPECT_LT(glm::length(ours - expected), 1e-9) << ours.x << ", " << ours.y << ", " << ours.z << " is not "
@@ -44,7 +44,7 @@ TEST(OrbitCamera, NeverTipsOverThePoles) {
         OrbitCamera orbit(from_the_front, 2.0);
         orbit.orbit({0.0, way});
         orbit.orbit({0.5, way});
-        const Camera& camera = orbit.camera();
+        const optics::Camera& camera = orbit.camera();
         EXPECT_NEAR(glm::length(camera.eye), 4.0, 1e-9);
         EXPECT_GT(glm::length(glm::cross(glm::normalize(camera.eye), camera.up)), 0.01) << way;
     }
@@ -110,14 +110,14 @@ TEST(FlyCamera, SpeedIsBounded) {
 
 TEST(ViewerCamera, WhatIsPrintedMeansTheSameCamera) {
     for (int i = 1; i < 1800; ++i) {
-        Camera camera{.eye = {0.1 * i, 1.0 / i, 3.0}, .target = {1e-7 * i, -2.0, 1e6 / i}};
+        optics::Camera camera{.eye = {0.1 * i, 1.0 / i, 3.0}, .target = {1e-7 * i, -2.0, 1e6 / i}};
         camera.yfov = 0.0017 * i;
-        const Camera once = app::snapped(camera);
+        const optics::Camera once = app::snapped(camera);
         EXPECT_TRUE(app::snapped(once) == once) << app::camera_text(camera);
         EXPECT_EQ(once.eye, camera.eye);
         EXPECT_NEAR(once.yfov, camera.yfov, 1e-10);
     }
-    EXPECT_TRUE(app::camera_text(Camera{}).ends_with(",45")) << app::camera_text(Camera{});
+    EXPECT_TRUE(app::camera_text(optics::Camera{}).ends_with(",45")) << app::camera_text(optics::Camera{});
 }
 
 TEST(Pace, FindsThePixelsThatFitTheTime) {
@@ -136,8 +136,7 @@ protected:
     ViewerTest() : scene_(scenes::make_builtin("knot")) {
         view_.width = 200;
         view_.height = 150;
-        view_.camera =
-            app::snapped(renderer::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0));
+        view_.camera = app::snapped(optics::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0));
     }
     [[nodiscard]] renderer::Renderer make(const renderer::TreeOptions& options = {}) const {
         return renderer::Renderer(scene_, scenes::take_snapshot(scene_), options);
@@ -158,12 +157,12 @@ protected:
 
 TEST_F(ViewerTest, RowsAreThoseOfTheWholePicture) {
     renderer::Renderer renderer = make();
-    const renderer::Image whole = renderer.render(view_);
+    const optics::Image whole = renderer.render(view_);
     std::vector<std::uint8_t> rows;
     for (int row = 0; row < view_.height; row += 37) {
         const renderer::Rows some{row, std::min(37, view_.height - row)};
         renderer.forget_picture();
-        const renderer::Image image =
+        const optics::Image image =
             row % 2 == 0 ? renderer.render_rows(view_, some) : renderer.render_rows_within(view_, some, 1e9);
         rows.insert(rows.end(), image.rgba.begin(), image.rgba.end());
     }
@@ -173,7 +172,7 @@ TEST_F(ViewerTest, RowsAreThoseOfTheWholePicture) {
 }
 
 TEST_F(ViewerTest, RefinesInSlicesToTheUnlimitedPicture) {
-    const renderer::Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_);
     renderer::Renderer renderer = make();
     app::Pace pace(1e-3, 4096.0);  // no time at all
     app::Refinement refinement(view_);
@@ -189,7 +188,7 @@ TEST_F(ViewerTest, PictureThatThePoolsCannotHoldIsStillTaken) {
     renderer::TreeOptions options;
     options.brick_pool_bytes = 1U << 20U;
     view_.pixel_error = 0.5;
-    const renderer::Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_);
     renderer::Renderer renderer = make(options);
     app::Viewer viewer(renderer, view_, 4.0);
     viewer.command(Command::take_picture);
@@ -260,11 +259,11 @@ TEST_F(ViewerTest, EveryInputIsShownAndComesToRestAgain) {
 
 TEST_F(ViewerTest, TreeIsShownByLevelsAndBricks) {
     renderer::Renderer renderer = make();
-    const renderer::Image surface = renderer.render(view_);
+    const optics::Image surface = renderer.render(view_);
     view_.show = renderer::Show::bricks;
-    const renderer::Image bricks = renderer.render(view_);
+    const optics::Image bricks = renderer.render(view_);
     view_.show = renderer::Show::levels;
-    const renderer::Image levels = renderer.render(view_);
+    const optics::Image levels = renderer.render(view_);
     std::size_t covered = 0, of_level = 0, marked = 0;
     // One level holds the whole knot at this size: all its pixels have the hue of that level.
     for (std::size_t i = 0; i < surface.rgba.size(); i += 4) {

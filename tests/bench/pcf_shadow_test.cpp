@@ -26,11 +26,11 @@ struct FloorRow {
     }
 };
 
-renderer::Light rectangle_above(double height, double half) {
-    renderer::Light light;
+optics::Light rectangle_above(double height, double half) {
+    optics::Light light;
     light.positional = true;
     light.position = {0, height, 0};
-    light.shape = renderer::LightShape::rectangle;
+    light.shape = optics::LightShape::rectangle;
     light.half_u = {half, 0, 0};
     light.half_v = {0, 0, half};
     return light;
@@ -38,7 +38,7 @@ renderer::Light rectangle_above(double height, double half) {
 
 class PcfShadowTest : public test::GlTest {
 protected:
-    static std::vector<float> shadow(const ShadowScene& scene, const renderer::Light& light,
+    static std::vector<float> shadow(const ShadowScene& scene, const optics::Light& light,
                                      const FloorRow& row, const PcfOptions& options) {
         PcfShadow map(scene.scene, scene.whole, scene.occluders, light, row.points, row.normals);
         const PcfShadow::Result result = map.shadow(options);
@@ -69,7 +69,7 @@ TEST_F(PcfShadowTest, PositionalLightEnlargesASquare) {
 // Under a light at infinity the shadow keeps its size and is moved by the slope times the height.
 TEST_F(PcfShadowTest, DirectionalLightMovesASquare) {
     const ShadowScene scene(square({0, 1, 0}, 0.5), square({0, 0, 0}, 3.0));
-    renderer::Light light;
+    optics::Light light;
     light.towards = {-0.75, 1.0, 0.0};
     const FloorRow row(-2.0, 2.0, 0.2);
     const auto shares = shadow(scene, light, row, {.map_size = 512, .kernel = 3});
@@ -103,7 +103,7 @@ TEST_F(PcfShadowTest, PenumbraOfASquareIsNearTheClosedForm) {
 // The plane of the receiver is what keeps a wide filter from shadowing it with itself.
 TEST_F(PcfShadowTest, OpenGroundUnderASlantingSoftLightIsLit) {
     const ShadowScene scene(square({0, 1, 0}, 0.5), square({0, 0, 0}, 3.0));
-    renderer::Light light;
+    optics::Light light;
     light.towards = {-1.0, 1.0, 0.3};
     light.angle = 0.1;
     const FloorRow row(-2.5, -0.5, 0.0);

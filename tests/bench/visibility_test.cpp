@@ -52,7 +52,7 @@ void expect_nothing_missed(const Subject& subject, renderer::View view,
                            const std::function<std::unique_ptr<VisibleBricks>(const renderer::View&)>& make) {
     view.shadow = renderer::Shadow::none;
     renderer::Renderer rays = subject.make({.brick_pool_bytes = pool_bytes}, {});
-    const renderer::Image image = rays.render(view);
+    const optics::Image image = rays.render(view);
     const renderer::FrameStatistics by_rays = rays.statistics();
     const Visibility by_frustum = make(view)->by_frustum();
     EXPECT_EQ(by_frustum.missed, 0U);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-renderer::Light ball_light() {
+optics::Light ball_light() {
     return {.positional = true, .position = {3.0, 5.0, 3.0}, .radius = 0.8};
 }
 
@@ -29,8 +29,8 @@ struct Knot {
     scenes::Scene scene = scenes::make_builtin("knot");
     scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     scenes::NodeSelection receivers = scenes::NodeSelection(scene.nodes.size(), true);
-    renderer::Camera camera = renderer::framing_camera(snapshot.bounds, 1.0);
-    renderer::Light light = ball_light();
+    optics::Camera camera = optics::framing_camera(snapshot.bounds, 1.0);
+    optics::Light light = ball_light();
     ImageTracer tracer{scene, snapshot};
 
     [[nodiscard]] ShadowQuestion question() const {

@@ -16,7 +16,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::Renderer;
 using renderer::TreeOptions;
 using renderer::View;
@@ -27,7 +27,7 @@ struct Difference {
     std::string first;            ///< where
 };
 
-Difference compare(const Image& a, const Image& b, int threshold) {
+Difference compare(const optics::Image& a, const optics::Image& b, int threshold) {
     Difference difference;
     EXPECT_EQ(a.rgba.size(), b.rgba.size());
     for (std::size_t pixel = 0; pixel * 4 < a.rgba.size(); ++pixel) {
@@ -57,7 +57,7 @@ View finest_view(const scenes::Scene& scene, int width = 160, int height = 120) 
     View view;
     view.width = width;
     view.height = height;
-    view.camera = renderer::framing_camera(scenes::take_snapshot(scene).bounds, double(width) / height);
+    view.camera = optics::framing_camera(scenes::take_snapshot(scene).bounds, double(width) / height);
     view.pixel_error = 1e-6;
     return view;
 }
@@ -76,8 +76,8 @@ TEST_P(TreeShapes, PictureEqualsThePlainCpuMarchOfTheSameBits) {
          {glm::dvec3(0.55, 0.45, 1.0), glm::dvec3(-1.0, 0.2, 0.1), glm::dvec3(0.1, 1.0, -0.3)}) {
         const double distance = glm::length(view.camera.eye - view.camera.target);
         view.camera.eye = view.camera.target + glm::normalize(direction) * distance;
-        const Image ours = renderer.render(view);
-        const Image twin = march_dense(voxels, view);
+        const optics::Image ours = renderer.render(view);
+        const optics::Image twin = march_dense(voxels, view);
         // Float against double: a chord's end moves by 1e-5 voxels, which shows where a threshold is crossed
         // (the voxel that weighs most, the first empty cell of a shadow ray), on few pixels.
         const Difference difference = compare(ours, twin, 2);
@@ -88,8 +88,8 @@ TEST_P(TreeShapes, PictureEqualsThePlainCpuMarchOfTheSameBits) {
 TEST_P(TreeShapes, PictureFromManyBricksEqualsTheOneFromADenseGrid) {
     const scenes::Scene scene = ball_over_floor();
     const View view = finest_view(scene);
-    const Image dense = make_renderer(scene, {.m = 64, .max_resolution = 64}).render(view);
-    const Image bricks =
+    const optics::Image dense = make_renderer(scene, {.m = 64, .max_resolution = 64}).render(view);
+    const optics::Image bricks =
         make_renderer(scene, {.n = GetParam().first, .m = GetParam().second, .max_resolution = 64})
             .render(view);
     const Difference difference = compare(dense, bricks, 1);
@@ -101,14 +101,14 @@ TEST_P(TreeShapes, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const View view = finest_view(scene);
     TreeOptions options{.n = GetParam().first, .m = GetParam().second, .max_resolution = 128};
     Renderer roomy = make_renderer(scene, options);
-    const Image expected = roomy.render(view);
+    const optics::Image expected = roomy.render(view);
     const std::uint64_t needed = roomy.statistics().bricks_resident;
 
     const std::size_t side = std::size_t(options.m) + 2;
     options.brick_pool_bytes = 4 * side * side * side * 6;  // about four bricks
     options.node_pool_bytes = 9 * 64 * 16;
     Renderer tight = make_renderer(scene, options);
-    const Image ours = tight.render(view);
+    const optics::Image ours = tight.render(view);
     EXPECT_EQ(ours.rgba, expected.rgba);
     EXPECT_LE(tight.statistics().bricks_resident * 4, needed) << "the pool was not far smaller than the view";
     EXPECT_GT(tight.statistics().bricks_evicted, 0U);
@@ -128,10 +128,10 @@ TEST_F(RendererTest, ConvergedFrameProducesNothingAndRepeatsThePicture) {
     Renderer renderer = make_renderer(scene, {});
     View view = finest_view(scene);
     view.pixel_error = 1.0;
-    const Image first = renderer.render(view);
+    const optics::Image first = renderer.render(view);
     EXPECT_GT(renderer.statistics().bricks_produced, 0U);
     renderer.forget_picture();
-    const Image second = renderer.render(view);
+    const optics::Image second = renderer.render(view);
     EXPECT_EQ(second.rgba, first.rgba);
     EXPECT_EQ(renderer.statistics().bricks_produced, 0U);
     EXPECT_EQ(renderer.statistics().nodes_subdivided, 0U);
@@ -149,12 +149,12 @@ TEST_F(RendererTest, PictureDoesNotDependOnTheFramesBeforeIt) {
     other.camera.eye = other.camera.target - 0.7 * (other.camera.eye - other.camera.target);
     Renderer used = make_renderer(scene, options);
     (void)used.render(near_view);
-    const Image after = used.render(other);
+    const optics::Image after = used.render(other);
     EXPECT_GT(used.statistics().bricks_evicted, 0U);
-    const Image fresh = make_renderer(scene, options).render(other);
+    const optics::Image fresh = make_renderer(scene, options).render(other);
     const Difference difference = compare(after, fresh, 0);
     EXPECT_EQ(difference.pixels_over, 0U) << difference.first << "; largest " << difference.largest;
-    const Image roomy = make_renderer(scene, {.max_resolution = 1024}).render(other);
+    const optics::Image roomy = make_renderer(scene, {.max_resolution = 1024}).render(other);
     const Difference with_room = compare(roomy, fresh, 0);
     EXPECT_EQ(with_room.pixels_over, 0U) << with_room.first << "; largest " << with_room.largest;
 }
@@ -179,7 +179,7 @@ TEST_F(RendererTest, EmptySceneIsBackgroundAndProducesNothing) {
     View view;
     view.width = 33;
     view.height = 17;
-    const Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view);
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
         ASSERT_EQ(image.rgba[i + 3], 0) << "pixel " << i / 4;
         ASSERT_EQ(image.rgba[i], image.rgba[0]) << "pixel " << i / 4;
@@ -198,7 +198,7 @@ TEST_F(RendererTest, ShadowOfASquareLiesWhereGeometryPutsIt) {
     view.camera.target = {0.0, 0.0, 0.0};
     view.light.towards = {0.0, 1.0, 0.0};
     view.light.ambient = 0.0F;
-    const Image image = make_renderer(scene, {}).render(view);
+    const optics::Image image = make_renderer(scene, {}).render(view);
     const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
@@ -241,7 +241,7 @@ TEST_F(RendererTest, FlatColoursComeThroughUnchanged) {
     view.camera.target = {0.0, 0.0, 0.0};
     view.camera.yfov = 0.3;
     view.light.ambient = 1.0F;
-    const Image image = make_renderer(scene, {}).render(view);
+    const optics::Image image = make_renderer(scene, {}).render(view);
     for (int channel = 0; channel < 3; ++channel) {
         const double c = linear[channel];
         const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
@@ -268,7 +268,7 @@ TEST_F(RendererTest, AlphaMaskCutsThePictureWhereTheTextureSaysSo) {
     view.width = view.height = 64;
     view.camera.eye = {0.0, 3.0, 0.0};
     view.camera.up = {0.0, 0.0, -1.0};
-    const Image picture = make_renderer(scene, {}).render(view);
+    const optics::Image picture = make_renderer(scene, {}).render(view);
     const double half = 64.0 / (2.0 * std::tan(0.5 * view.camera.yfov) * 3.0);  // pixels across a unit
     for (int x = 0; x < 64; ++x) {
         const double place = (x + 0.5 - 32.0) / half;
@@ -289,9 +289,9 @@ TEST_F(RendererTest, LongRaysPauseAndStillEndWithTheSamePicture) {
     view.camera.yfov = 1e-7;
     view.shadow = renderer::Shadow::none;
     Renderer renderer = make_renderer(scene, {.max_resolution = 65536});
-    const Image first = renderer.render(view);
+    const optics::Image first = renderer.render(view);
     renderer.forget_picture();
-    const Image second = renderer.render(view);
+    const optics::Image second = renderer.render(view);
     EXPECT_EQ(renderer.statistics().bricks_produced, 0U);
     EXPECT_GT(renderer.statistics().passes, 1) << "no ray was long enough to pause";
     EXPECT_EQ(first.rgba, second.rgba);
@@ -304,8 +304,8 @@ TEST_F(RendererTest, PictureLargerThanTheDriversBufferIsMarchedInBands) {
     View large = small;
     large.width *= 2;
     large.height *= 2;  // 3.2 million ray states of 48 bytes: more than 128 MiB
-    const Image coarse = renderer.render(small);
-    const Image fine = renderer.render(large);
+    const optics::Image coarse = renderer.render(small);
+    const optics::Image fine = renderer.render(large);
     ASSERT_EQ(fine.rgba.size(), 16U * 800U * 1000U);
     // The same voxels in both: away from their edges the larger picture repeats the smaller one's pixels.
     std::size_t far_off = 0;
@@ -339,8 +339,8 @@ TEST_F(RendererTest, LargeBricksHoldLargeTrianglesWhole) {
     const scenes::Scene scene = scenes::make_builtin("cornell");
     View view = finest_view(scene, 128, 128);
     view.shadow = renderer::Shadow::none;
-    const Image small = make_renderer(scene, {.m = 16, .max_resolution = 256}).render(view);
-    const Image large = make_renderer(scene, {.m = 64, .max_resolution = 256}).render(view);
+    const optics::Image small = make_renderer(scene, {.m = 16, .max_resolution = 256}).render(view);
+    const optics::Image large = make_renderer(scene, {.m = 64, .max_resolution = 256}).render(view);
     const Difference difference = compare(small, large, 1);
     EXPECT_EQ(difference.pixels_over, 0U) << difference.first;
 }

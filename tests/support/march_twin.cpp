@@ -274,7 +274,7 @@ DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution) {
     return out;
 }
 
-renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& view) {
+optics::Image march_dense(const DenseVoxels& voxels, const renderer::View& view) {
     auto place = [&](const dvec3& world) { return (world - voxels.grid.origin) / voxels.grid.voxel_size; };
     const dvec3 eye = place(view.camera.eye);
     const dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
@@ -282,7 +282,7 @@ renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& vie
     const dvec3 up = glm::cross(right, forward);
     const double half_height = std::tan(0.5 * view.camera.yfov);
     const double half_width = half_height * view.width / view.height;
-    renderer::Image image{view.width, view.height, {}};
+    optics::Image image{view.width, view.height, {}};
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
             const double px = (x + 0.5) / view.width * 2.0 - 1.0;

@@ -39,6 +39,6 @@ struct DenseVoxels {
 [[nodiscard]] DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution);
 
 /// Marches the dense grid at its own resolution, whatever the distance.
-[[nodiscard]] renderer::Image march_dense(const DenseVoxels& voxels, const renderer::View& view);
+[[nodiscard]] optics::Image march_dense(const DenseVoxels& voxels, const renderer::View& view);
 
 }  // namespace cairn::test

@@ -16,7 +16,7 @@
 /// Pictures of meshes beside voxels, and how they are compared.
 namespace cairn::test {
 
-using renderer::Image;
+using optics::Image;
 using renderer::MeshRaster;
 using renderer::Renderer;
 using renderer::View;
@@ -44,13 +44,13 @@ inline View flat_view(const glm::dvec3& eye, const glm::dvec3& target, int width
     return view;
 }
 
-inline glm::ivec4 at(const Image& image, int x, int y) {
+inline glm::ivec4 at(const optics::Image& image, int x, int y) {
     const std::size_t i = 4 * (std::size_t(y) * std::size_t(image.width) + std::size_t(x));
     return {image.rgba[i], image.rgba[i + 1], image.rgba[i + 2], image.rgba[i + 3]};
 }
 
 /// Pixels that differ by more than `threshold` in any channel, or in colour alone.
-inline int others(const Image& a, const Image& b, int threshold, bool alpha = true) {
+inline int others(const optics::Image& a, const optics::Image& b, int threshold, bool alpha = true) {
     EXPECT_EQ(a.rgba.size(), b.rgba.size());
     int count = 0;
     for (std::size_t i = 0; i < a.rgba.size(); i += 4) {

@@ -5,7 +5,7 @@
 
 #include <glm/glm.hpp>
 
-#include "renderer/shadow/rectangle_light.h"
+#include "renderer/shadow/shadow_frustum.h"
 #include "renderer/shadow/soft_shadow_map.h"
 #include "scenes/node_selection.h"
 #include "scenes/scene.h"

@@ -43,7 +43,7 @@ public:
         view.pixel_error = 1e-6;
         view.light.positional = true;
         view.light.position = {moved.x, light_height, moved.y};
-        view.light.shape = renderer::LightShape::rectangle;
+        view.light.shape = optics::LightShape::rectangle;
         view.light.half_u = {light_half, 0.0, 0.0};
         view.light.half_v = {0.0, 0.0, light_half};
         view.shadow_rays = rays;

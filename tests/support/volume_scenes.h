@@ -62,7 +62,7 @@ inline renderer::View glowing_view(const scenes::Bounds& bounds, int width = 64,
     renderer::View view;
     view.width = width;
     view.height = height;
-    view.camera = renderer::framing_camera(bounds, double(width) / height);
+    view.camera = optics::framing_camera(bounds, double(width) / height);
     view.light.ambient = 1.0F;
     view.shadow = renderer::Shadow::none;
     view.pixel_error = 1e-6;
@@ -74,8 +74,7 @@ struct PictureDifference {
     std::size_t over = 0;  ///< pixels that differ by more than the threshold
     std::string worst;
 };
-inline PictureDifference difference_of(const renderer::Image& a, const renderer::Image& b,
-                                       int threshold = 0) {
+inline PictureDifference difference_of(const optics::Image& a, const optics::Image& b, int threshold = 0) {
     PictureDifference difference;
     EXPECT_EQ(a.rgba.size(), b.rgba.size());
     for (std::size_t pixel = 0; 4 * pixel < std::min(a.rgba.size(), b.rgba.size()); ++pixel) {
@@ -85,7 +84,7 @@ inline PictureDifference difference_of(const renderer::Image& a, const renderer:
         if (most > threshold) ++difference.over;
         if (most <= difference.largest) continue;
         difference.largest = most;
-        const auto text = [pixel](const renderer::Image& image) {
+        const auto text = [pixel](const optics::Image& image) {
             const std::uint8_t* p = &image.rgba[4 * pixel];
             return fmt::format("{} {} {} {}", p[0], p[1], p[2], p[3]);
         };

@@ -75,9 +75,9 @@ glm::dvec3 pixel_direction(const renderer::View& view, int x, int y) {
     return glm::normalize(forward + px * half_width * right - py * half_height * up);
 }
 
-renderer::Image march_densities(const Densities& densities, const renderer::TransferFunction& transfer,
-                                const renderer::View& view, double steps_a_voxel) {
-    renderer::Image image{view.width, view.height, {}};
+optics::Image march_densities(const Densities& densities, const renderer::TransferFunction& transfer,
+                              const renderer::View& view, double steps_a_voxel) {
+    optics::Image image{view.width, view.height, {}};
     const auto encoded = [](double linear) {
         const double c = std::clamp(linear, 0.0, 1.0);
         const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;

@@ -35,8 +35,8 @@ struct Gathered {
 [[nodiscard]] glm::dvec3 pixel_direction(const renderer::View& view, int x, int y);
 
 /// The picture of a volume that is lit from everywhere alike.
-[[nodiscard]] renderer::Image march_densities(const Densities& densities,
-                                              const renderer::TransferFunction& transfer,
-                                              const renderer::View& view, double steps_a_voxel = 24.0);
+[[nodiscard]] optics::Image march_densities(const Densities& densities,
+                                            const renderer::TransferFunction& transfer,
+                                            const renderer::View& view, double steps_a_voxel = 24.0);
 
 }  // namespace cairn::test

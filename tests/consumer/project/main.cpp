@@ -28,8 +28,8 @@ int main() {
         cairn::renderer::View view;
         view.width = 64;
         view.height = 48;
-        view.camera = cairn::renderer::framing_camera(snapshot.bounds, 64.0 / 48.0);
-        const cairn::renderer::Image image = cairn::renderer::Renderer(scene, snapshot).render(view);
+        view.camera = optics::framing_camera(snapshot.bounds, 64.0 / 48.0);
+        const optics::Image image = cairn::renderer::Renderer(scene, snapshot).render(view);
         const auto [low, high] = std::minmax_element(image.rgba.begin(), image.rgba.end());
 
         std::printf("%llu voxels, pixels from %d to %d\n", static_cast<unsigned long long>(occupied), *low,

@@ -14,8 +14,8 @@
 namespace cairn::test {
 namespace {
 
+using optics::Image;
 using renderer::BatchPace;
-using renderer::Image;
 using renderer::Renderer;
 using renderer::TreeOptions;
 using renderer::View;
@@ -27,7 +27,7 @@ struct Course {
     std::uint64_t evicted = 0;
     bool settled = false;
     bool converged = false;
-    Image image;
+    optics::Image image;
 };
 
 Course refine(Renderer& renderer, const View& view) {
@@ -52,7 +52,7 @@ protected:
         view_.width = 128;
         view_.height = 96;
         view_.pixel_error = 0.4;
-        view_.camera = renderer::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0);
+        view_.camera = optics::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0);
         behind_ = view_;
         behind_.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
     }
@@ -121,7 +121,7 @@ TEST_F(CacheConvergence, PoolThatHoldsNoBandComesToRest) {
         (void)renderer.render_rows_within(behind_, {40, 24}, 0.0);
         idle = renderer.statistics().bricks_produced == 0 ? idle + 1 : 0;
     }
-    const Image at_rest = renderer.render_rows_within(behind_, {40, 24}, 0.0);
+    const optics::Image at_rest = renderer.render_rows_within(behind_, {40, 24}, 0.0);
     for (int visit = 0; visit < 5; ++visit) {
         EXPECT_EQ(renderer.render_rows_within(behind_, {40, 24}, 0.0).rgba, at_rest.rgba) << visit;
         EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << visit;

@@ -19,9 +19,9 @@
 namespace cairn::test {
 namespace {
 
+using optics::Image;
 using renderer::BrickCache;
 using renderer::BrickPool;
-using renderer::Image;
 using renderer::Renderer;
 using renderer::Tile;
 using renderer::TreeOptions;
@@ -144,7 +144,7 @@ protected:
         view_.width = 96;
         view_.height = 72;
         view_.pixel_error = 0.15;
-        view_.camera = renderer::framing_camera(snapshot_.bounds, 4.0 / 3.0);
+        view_.camera = optics::framing_camera(snapshot_.bounds, 4.0 / 3.0);
         behind_ = view_;
         behind_.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
     }
@@ -170,7 +170,7 @@ protected:
 };
 
 TEST_F(CacheStability, PoolsOfATwentiethOfTheViewEndWithTheSamePicture) {
-    const Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_);
     TreeOptions options = share_of(0.05, view_);
     for (const std::size_t cache_bytes : {std::size_t(0), std::size_t(1) << 20U, std::size_t(64) << 20U}) {
         options.brick_cache_bytes = cache_bytes;
@@ -188,11 +188,11 @@ TEST_F(CacheStability, CachedBricksAreRestoredInsteadOfProduced) {
     options.brick_pool_bytes = 40 * slot_bytes;
     options.brick_cache_bytes = std::size_t(256) << 20U;
     Renderer renderer = make(options);
-    const Image first = renderer.render(view_);
+    const optics::Image first = renderer.render(view_);
     EXPECT_GT(renderer.statistics().bricks_cached, 0U);
     EXPECT_GT(renderer.statistics().brick_cache_bytes, 0U);
     renderer.forget_picture();
-    const Image second = renderer.render(view_);
+    const optics::Image second = renderer.render(view_);
     EXPECT_EQ(second.rgba, first.rgba);
     EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << "all of them were in main memory";
     EXPECT_GT(renderer.statistics().bricks_restored, 100U);
@@ -203,7 +203,7 @@ TEST_F(CacheStability, BricksOfEvictedNodesAreLinkedAgain) {
     TreeOptions options;
     options.node_pool_bytes = std::size_t(8) * 64 * 16;
     Renderer renderer = make(options);
-    const Image first = renderer.render(view_);
+    const optics::Image first = renderer.render(view_);
     EXPECT_GT(renderer.statistics().nodes_evicted, 0U);
     renderer.forget_picture();
     EXPECT_EQ(renderer.render(view_).rgba, first.rgba);
@@ -214,9 +214,9 @@ TEST_F(CacheStability, BricksOfEvictedNodesAreLinkedAgain) {
 
 TEST_F(CacheStability, StaticCameraMarchesNothing) {
     Renderer renderer = make();
-    const Image first = renderer.render(view_);
+    const optics::Image first = renderer.render(view_);
     EXPECT_GT(renderer.statistics().passes, 0);
-    const auto expect_known = [&](const Image& image, const char* what) {
+    const auto expect_known = [&](const optics::Image& image, const char* what) {
         EXPECT_EQ(image.rgba, first.rgba) << what;
         EXPECT_EQ(renderer.statistics().passes, 0) << what;
         EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << what;
@@ -226,7 +226,7 @@ TEST_F(CacheStability, StaticCameraMarchesNothing) {
     expect_known(renderer.render(view_), "the same view");
     expect_known(renderer.render_within(view_, 0.0), "within a budget");
     expect_known(renderer.render_rows(view_, {0, view_.height}), "all rows");
-    const Image rows = renderer.render_rows_within(view_, {30, 9}, 0.0);
+    const optics::Image rows = renderer.render_rows_within(view_, {30, 9}, 0.0);
     EXPECT_EQ(renderer.statistics().passes, 0);
     EXPECT_EQ(rows.height, 9);
     EXPECT_TRUE(std::equal(rows.rgba.begin(), rows.rgba.end(), first.rgba.begin() + 30 * view_.width * 4));
@@ -261,8 +261,8 @@ TEST_F(CacheStability, EmptyScenesBackgroundIsThatOfOthers) {
     away.camera.target = 2.0 * away.camera.eye - away.camera.target;
     for (int i = 0; i < 20; ++i) {
         away.background = glm::vec3(float(i) / 16.0F, 0.003F * float(i), 1.0F - 0.045F * float(i));
-        const Image ours = empty.render(away);
-        const Image marched = knot.render(away);
+        const optics::Image ours = empty.render(away);
+        const optics::Image marched = knot.render(away);
         EXPECT_EQ(empty.statistics().passes, 0);
         EXPECT_GT(knot.statistics().passes, 0);
         for (std::size_t k = 0; k < 4; ++k)
@@ -272,7 +272,7 @@ TEST_F(CacheStability, EmptyScenesBackgroundIsThatOfOthers) {
 }
 
 TEST_F(CacheStability, MoreQuestionsThanThereIsRoomForAreAskedAgain) {
-    const Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_);
     for (const int capacity : {3, 65536}) {
         TreeOptions options;
         options.query_capacity = capacity;
@@ -306,9 +306,9 @@ TEST_F(CacheStability, PrefetchedBricksAreFoundByTheNextFrames) {
     for (int frame = 1; frame < frames; ++frame) {
         View next = camera_at(frame);
         if (frame > 1)
-            next.camera = renderer::extrapolated(camera_at(frame - 2).camera, camera_at(frame - 1).camera);
+            next.camera = optics::extrapolated(camera_at(frame - 2).camera, camera_at(frame - 1).camera);
         const std::uint64_t done = ahead.prefetch(next, 1e6);
-        const Image expected = plain.render_within(camera_at(frame), 1e9);
+        const optics::Image expected = plain.render_within(camera_at(frame), 1e9);
         produced += plain.statistics().bricks_produced;
         EXPECT_EQ(ahead.render_within(camera_at(frame), 1e9).rgba, expected.rgba) << "frame " << frame;
         produced_late += ahead.statistics().bricks_produced;
@@ -327,7 +327,7 @@ TEST_F(CacheStability, PrefetchTakesNothingFromTheFrameBeforeIt) {
     (void)fresh.render_within(view_, 1e9);
     options.brick_pool_bytes = (fresh.statistics().bricks_resident + 30) * slot_bytes;
     Renderer renderer = make(options);
-    const Image before = renderer.render_within(view_, 1e9);
+    const optics::Image before = renderer.render_within(view_, 1e9);
     ASSERT_TRUE(renderer.statistics().converged);
     (void)renderer.prefetch(behind_, 1e6);
     renderer.forget_picture();
@@ -416,7 +416,7 @@ TEST_F(CacheStability, SizesMayChangeWithEveryFrame) {
         view.pixel_error = 1.0;
         view.width = int(random.between(1, 150));
         view.height = int(random.between(1, 150));
-        const Image ours =
+        const optics::Image ours =
             frame % 3 == 0 ? renderer.render(view) : renderer.render_within(view, frame % 3 == 1 ? 0.0 : 1e9);
         EXPECT_EQ(ours.rgba.size(), std::size_t(view.width) * std::size_t(view.height) * 4);
         if (!renderer.statistics().converged) continue;

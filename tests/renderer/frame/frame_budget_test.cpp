@@ -13,7 +13,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::Renderer;
 using renderer::TreeOptions;
 using renderer::View;
@@ -24,7 +24,7 @@ protected:
         view_.width = 160;
         view_.height = 120;
         view_.pixel_error = 0.3;  // some hundred bricks
-        view_.camera = renderer::framing_camera(scenes::take_snapshot(scene_).bounds, 160.0 / 120.0);
+        view_.camera = optics::framing_camera(scenes::take_snapshot(scene_).bounds, 160.0 / 120.0);
     }
 
     [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
@@ -35,12 +35,12 @@ protected:
     View view_;
 };
 
-bool shows_something(const Image& image, std::size_t pixel) {
+bool shows_something(const optics::Image& image, std::size_t pixel) {
     return image.rgba[4 * pixel + 3] != 0;
 }
 
 /// Pixels that one of the pictures shows as background and the other does not.
-std::size_t different_silhouettes(const Image& a, const Image& b) {
+std::size_t different_silhouettes(const optics::Image& a, const optics::Image& b) {
     std::size_t count = 0;
     for (std::size_t pixel = 0; 4 * pixel < a.rgba.size(); ++pixel)
         count += shows_something(a, pixel) != shows_something(b, pixel) ? 1 : 0;
@@ -48,17 +48,17 @@ std::size_t different_silhouettes(const Image& a, const Image& b) {
 }
 
 TEST_F(FrameBudgetTest, FrameWithTimeToSpareIsThePictureOfAnUnlimitedOne) {
-    const Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_);
     Renderer renderer = make();
-    const Image ours = renderer.render_within(view_, 1e9);
+    const optics::Image ours = renderer.render_within(view_, 1e9);
     EXPECT_TRUE(renderer.statistics().converged);
     EXPECT_EQ(ours.rgba, expected.rgba);
 }
 
 TEST_F(FrameBudgetTest, FramesWithoutTimeConvergeToExactlyTheUnlimitedPicture) {
-    const Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_);
     Renderer renderer = make();
-    Image ours;
+    optics::Image ours;
     std::uint64_t bricks = 0;
     int frames = 0;
     do {
@@ -75,14 +75,14 @@ TEST_F(FrameBudgetTest, FramesWithoutTimeConvergeToExactlyTheUnlimitedPicture) {
 }
 
 TEST_F(FrameBudgetTest, WhatIsMissingIsStoodInForByCoarserVoxels) {
-    const Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_);
     Renderer renderer = make();
     const std::size_t pixels = expected.rgba.size() / 4;
     // Coarse voxels are fat: the first pictures show more, but never a hole.
     std::size_t holes_after_two = 0;
     (void)renderer.render_within(view_, 0.0);
     for (int frame = 1; frame < 6; ++frame) {
-        const Image ours = renderer.render_within(view_, 0.0);
+        const optics::Image ours = renderer.render_within(view_, 0.0);
         ASSERT_FALSE(renderer.statistics().converged);
         for (std::size_t pixel = 0; pixel < pixels; ++pixel)
             holes_after_two += shows_something(expected, pixel) && !shows_something(ours, pixel) ? 1 : 0;
@@ -96,15 +96,15 @@ TEST_F(FrameBudgetTest, PoolsTooSmallLowerTheLevelOfDetailAndStandStill) {
     const std::size_t side = std::size_t(options.m) + 2;
     options.brick_pool_bytes = 60 * side * side * side * 6;
     Renderer renderer = make(options);
-    Image before;
-    Image ours;
+    optics::Image before;
+    optics::Image ours;
     for (int frame = 0; frame < 40; ++frame) {
         before = ours;
         ours = renderer.render_within(view_, 1e9);
         EXPECT_FALSE(renderer.statistics().converged);
         EXPECT_LE(renderer.statistics().brick_pool_bytes, options.brick_pool_bytes);
     }
-    const Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_);
     EXPECT_EQ(ours.rgba, before.rgba) << "the picture flickers";
     EXPECT_LT(different_silhouettes(ours, expected), expected.rgba.size() / 4 / 6);
     // A patient frame goes on with the same pools.

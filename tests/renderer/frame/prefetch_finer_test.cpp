@@ -13,7 +13,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::Renderer;
 using renderer::TreeOptions;
 using renderer::View;
@@ -23,8 +23,7 @@ protected:
     PrefetchFiner() : scene_(scenes::make_builtin("knot")) {
         view_.width = 96;
         view_.height = 72;
-        view_.camera =
-            app::snapped(renderer::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0));
+        view_.camera = app::snapped(optics::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0));
         near_ = view_;
         near_.camera.eye = glm::mix(view_.camera.target, view_.camera.eye, 0.5);
     }
@@ -61,7 +60,7 @@ protected:
 TEST_F(PrefetchFiner, ApproachFindsItsBricks) {
     Renderer plain = make();
     (void)plain.render_within(view_, 1e9);
-    const Image expected = plain.render_within(near_, 1e9);
+    const optics::Image expected = plain.render_within(near_, 1e9);
     const std::uint64_t late = plain.statistics().bricks_produced;
     ASSERT_GT(late, 50U) << "nothing finer is to be seen";
 
@@ -88,7 +87,7 @@ TEST_F(PrefetchFiner, StopsWhenThePoolIsFullAndTakesNothingFromTheView) {
     View behind = view_;
     behind.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
     (void)renderer.render(behind);  // whose bricks may go
-    Image before;
+    optics::Image before;
     // In bands, as the viewer does it: what any of them used stays.
     for (int row = 0; row < view_.height; row += 24) {
         (void)renderer.render_rows_within(view_, {row, 24}, 1e9);
@@ -130,7 +129,7 @@ TEST_F(PrefetchFiner, ViewerThatStandsStillLooksAheadAndThenRests) {
     };
     rest();
     EXPECT_TRUE(viewer.converged());
-    const Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_);
     EXPECT_EQ(viewer.growing().image().rgba, expected.rgba);
     EXPECT_FALSE(renderer.prefetch_finer(1e9).more) << "it rests too early";
     const std::uint64_t produced = viewer.bricks_produced();

@@ -14,8 +14,8 @@
 namespace cairn::test {
 namespace {
 
+using optics::Image;
 using renderer::FractalContent;
-using renderer::Image;
 using renderer::Renderer;
 using renderer::Tile;
 using renderer::TreeOptions;
@@ -61,7 +61,7 @@ struct Difference {
     std::string first;
 };
 
-Difference compare(const Image& a, const Image& b, int threshold = 0) {
+Difference compare(const optics::Image& a, const optics::Image& b, int threshold = 0) {
     Difference out;
     EXPECT_EQ(a.rgba.size(), b.rgba.size());
     for (std::size_t pixel = 0; 4 * pixel < a.rgba.size(); ++pixel) {
@@ -78,7 +78,7 @@ Difference compare(const Image& a, const Image& b, int threshold = 0) {
 }
 
 /// Neither all background nor of one colour: a picture that two equal empty ones are not.
-void expect_a_picture(const Image& image) {
+void expect_a_picture(const optics::Image& image) {
     std::size_t covered = 0;
     int least = 255;
     int most = 0;
@@ -101,10 +101,10 @@ protected:
 
 TEST_P(Zoom, PicturesAtEachPowerAreTheSameBitForBitDownTo2ToTheMinus40) {
     Renderer renderer = make_renderer(deep_options(GetParam()));
-    const Image first = renderer.render(zoomed_view(GetParam().n, 2));
+    const optics::Image first = renderer.render(zoomed_view(GetParam().n, 2));
     expect_a_picture(first);
     for (int level = 3; level <= deepest(); ++level) {
-        const Image image = renderer.render(zoomed_view(GetParam().n, level));
+        const optics::Image image = renderer.render(zoomed_view(GetParam().n, level));
         const Difference difference = compare(image, first);
         ASSERT_EQ(difference.pixels, 0U) << "level " << level << ": " << difference.first << ", "
                                          << difference.silhouettes << " of silhouettes";
@@ -113,7 +113,7 @@ TEST_P(Zoom, PicturesAtEachPowerAreTheSameBitForBitDownTo2ToTheMinus40) {
 
 TEST_P(Zoom, SmallStepsOfTheCameraChangeADeepPictureAsAShallowOne) {
     Renderer renderer = make_renderer(deep_options(GetParam()));
-    Image before;
+    optics::Image before;
     std::size_t changed = 0;
     for (int step = 0; step < 6; ++step) {
         auto moved = [&](int level) {
@@ -122,8 +122,8 @@ TEST_P(Zoom, SmallStepsOfTheCameraChangeADeepPictureAsAShallowOne) {
             view.camera.eye += glm::dvec3(1.0, -0.5, 0.25) * (step * 0x1p-11);
             return renderer.render(view);
         };
-        const Image shallow = moved(3);
-        const Image deep = moved(deepest());
+        const optics::Image shallow = moved(3);
+        const optics::Image deep = moved(deepest());
         const Difference difference = compare(deep, shallow);
         EXPECT_EQ(difference.pixels, 0U) << "step " << step << ": " << difference.first;
         if (step > 0) changed += compare(shallow, before).pixels;
@@ -140,8 +140,8 @@ TEST_P(Zoom, NearLightCastsTheSameShadowsAtEveryDepth) {
         view.light.position = {0.45, 0.8, 0.3};
         return renderer.render(view);
     };
-    const Image shallow = lit(3);
-    const Image deep = lit(deepest());
+    const optics::Image shallow = lit(3);
+    const optics::Image deep = lit(deepest());
     const Difference difference = compare(deep, shallow);
     EXPECT_EQ(difference.pixels, 0U) << difference.first;
     View dark = zoomed_view(GetParam().n, 3);
@@ -169,7 +169,7 @@ TEST_P(Zoom, WindowsShowWhatTheRootAloneShows) {
     beside.camera.eye = {1.3, 1.2, 1.1};
     for (const View& view :
          {zoomed_view(GetParam().n, 1), zoomed_view(GetParam().n, 2), outside, far, beside}) {
-        const Image expected = whole.render(view);
+        const optics::Image expected = whole.render(view);
         expect_a_picture(expected);
         // The eye is rounded to floats in other units: a ray that grazes a voxel's edge may take its other
         // side.
@@ -183,9 +183,9 @@ TEST_P(Zoom, SmallPoolsAndFramesWithoutTimeEndWithTheSamePicture) {
     TreeOptions options = deep_options(GetParam());
     const View view = zoomed_view(GetParam().n, deepest() - 1);
     Renderer roomy = make_renderer(options);
-    const Image expected = roomy.render(view);
+    const optics::Image expected = roomy.render(view);
     Renderer hasty = make_renderer(options);
-    Image image = hasty.render_within(view, 0.0);
+    optics::Image image = hasty.render_within(view, 0.0);
     for (int frame = 0; frame < 400 && !hasty.statistics().converged; ++frame)
         image = hasty.render_within(view, 0.0);
     EXPECT_TRUE(hasty.statistics().converged);

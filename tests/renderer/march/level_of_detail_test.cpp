@@ -16,7 +16,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::LevelOfDetail;
 using renderer::Renderer;
 using renderer::TreeOptions;
@@ -28,7 +28,7 @@ struct Change {
     std::string where;
 };
 
-Change change_between(const Image& a, const Image& b) {
+Change change_between(const optics::Image& a, const optics::Image& b) {
     Change change;
     EXPECT_EQ(a.rgba.size(), b.rgba.size());
     for (std::size_t i = 0; i < a.rgba.size(); ++i) {
@@ -43,7 +43,7 @@ Change change_between(const Image& a, const Image& b) {
     return change;
 }
 
-std::size_t pixels_that_differ(const Image& a, const Image& b, int limit) {
+std::size_t pixels_that_differ(const optics::Image& a, const optics::Image& b, int limit) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
         bool differs = false;
@@ -63,7 +63,7 @@ View view_of(const scenes::Scene& scene, int width, int height, LevelOfDetail le
     View view;
     view.width = width;
     view.height = height;
-    view.camera = renderer::framing_camera(scenes::take_snapshot(scene).bounds, double(width) / height);
+    view.camera = optics::framing_camera(scenes::take_snapshot(scene).bounds, double(width) / height);
     view.level_of_detail = level_of_detail;
     return view;
 }
@@ -81,10 +81,10 @@ struct Jumps {
 
 Jumps jumps_of(Renderer& renderer, View view, int steps) {
     Jumps jumps;
-    Image before;
+    optics::Image before;
     for (int step = 0; step <= steps; ++step) {
         view.pixel_error = std::pow(16.0, double(step) / steps);
-        Image image = renderer.render(view);
+        optics::Image image = renderer.render(view);
         if (step > 0) {
             const Change change = change_between(before, image);
             jumps.largest = std::max(jumps.largest, change.mean);
@@ -128,14 +128,14 @@ TEST_F(LevelOfDetailTest, MovingBackInSmallStepsChangesLittle) {
         const glm::dvec3 back = view.camera.eye - view.camera.target;
         const int steps = 200;
         double most = 0.0;
-        Image before;
+        optics::Image before;
         for (int step = 0; step <= steps; ++step) {
             // Four times as far in the end: one level of N = 4. The lens grows longer, so that the picture
             // stays.
             const double distance = std::pow(4.0, double(step) / steps);
             view.camera.eye = view.camera.target + back * distance;
             view.camera.yfov = 0.7;
-            Image image = renderer.render(view);
+            optics::Image image = renderer.render(view);
             if (step > 0) most = std::max(most, change_between(before, image).mean);
             before = std::move(image);
         }
@@ -160,9 +160,9 @@ TEST_P(BlendedShapes, NoVoxelIsNarrowerThanThePixelMeansTheFinestAlone) {
     View view = view_of(scene, 120, 90, LevelOfDetail::blended);
     view.pixel_error = 1e-6;
     view.shadow = renderer::Shadow::none;
-    const Image blended = renderer.render(view);
+    const optics::Image blended = renderer.render(view);
     view.level_of_detail = LevelOfDetail::nearest;
-    const Image nearest = renderer.render(view);
+    const optics::Image nearest = renderer.render(view);
     // Blended voxels that look away from the viewer count as silhouettes up to a wider angle: that shows at
     // some of them.
     EXPECT_LE(pixels_that_differ(blended, nearest, 2), blended.rgba.size() / 4 / 200)
@@ -176,7 +176,7 @@ TEST_P(BlendedShapes, PictureDoesNotDependOnHowOftenRaysAreInterrupted) {
     const View view = view_of(scene, 120, 90, LevelOfDetail::blended);
     TreeOptions tree = options(512);
     Renderer roomy = make_renderer(scene, tree);
-    const Image expected = roomy.render(view);
+    const optics::Image expected = roomy.render(view);
     EXPECT_EQ(roomy.render(view).rgba, expected.rgba) << "one pass, no ray waits";
     tree.brick_pool_bytes = roomy.statistics().brick_pool_bytes / roomy.statistics().brick_slots * 8;
     tree.node_pool_bytes = std::size_t(12 * std::max(tree.n * tree.n * tree.n, 64)) * 16;
@@ -191,7 +191,7 @@ TEST_P(BlendedShapes, PictureDoesNotDependOnHowOftenRaysAreInterrupted) {
     EXPECT_GT(cached.statistics().bricks_restored, 0U);
     Renderer hurried = make_renderer(scene, options(512));
     int frames = 0;
-    Image ours;
+    optics::Image ours;
     do {
         ours = hurried.render_within(view, 0.0);
     } while (!hurried.statistics().converged && ++frames < 300);
@@ -210,7 +210,7 @@ TEST_P(BlendedShapes, ClosedSurfaceLetsNoBackgroundThrough) {
     view.level_of_detail = LevelOfDetail::blended;
     for (int step = 0; step < 24; ++step) {
         view.pixel_error = 0.25 * std::pow(64.0, step / 23.0);
-        const Image image = renderer.render(view);
+        const optics::Image image = renderer.render(view);
         for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
             ASSERT_EQ(image.rgba[i], 255)
                 << "pixel error " << view.pixel_error << ", pixel " << i / 4 % 64 << ' ' << i / 4 / 64;
@@ -236,7 +236,7 @@ TEST_F(LevelOfDetailTest, BricksOfAllSizesBlendToTheSamePicture) {
         view.pixel_error = 4.0;
         return make_renderer(scene, {.n = 2, .m = m, .max_resolution = 512}).render(view);
     };
-    const Image large = render(32, LevelOfDetail::blended);
+    const optics::Image large = render(32, LevelOfDetail::blended);
     for (const int m : {8, 16}) {
         const Change change = change_between(large, render(m, LevelOfDetail::blended));
         EXPECT_LE(change.largest, 1) << "M = " << m << ", " << change.where;
@@ -284,8 +284,8 @@ TEST_F(LevelOfDetailTest, MipsGoWithSurfacesAndPowersOfTwo) {
 TEST_F(LevelOfDetailTest, MipsDoNotChangeTheNearestLevelsPicture) {
     const scenes::Scene scene = scenes::make_builtin("knot");
     const View view = view_of(scene, 160, 120, LevelOfDetail::nearest);
-    const Image with = make_renderer(scene, {}, true).render(view);
-    const Image without = make_renderer(scene, {}, false).render(view);
+    const optics::Image with = make_renderer(scene, {}, true).render(view);
+    const optics::Image without = make_renderer(scene, {}, false).render(view);
     EXPECT_EQ(with.rgba, without.rgba);
 }
 

@@ -25,7 +25,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::Renderer;
 using renderer::TileQueries;
 using renderer::TreeOptions;
@@ -205,7 +205,7 @@ protected:
         view_.width = 101;
         view_.height = 70;
         view_.pixel_error = 0.3;
-        view_.camera = renderer::framing_camera(snapshot_.bounds, 1.4);
+        view_.camera = optics::framing_camera(snapshot_.bounds, 1.4);
     }
     [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
         return Renderer(scene_, snapshot_, options);
@@ -228,7 +228,7 @@ TEST_F(TileQueriesTest, BlocksTellEnoughForTheSamePicture) {
         const TreeOptions options{.n = n, .brick_pool_bytes = 64U << 20U};
         Renderer list = make(options);
         Renderer blocks = make(with_blocks(options));
-        const Image expected = list.render(view_);
+        const optics::Image expected = list.render(view_);
         EXPECT_EQ(blocks.render(view_).rgba, expected.rgba);
         const renderer::FrameStatistics& of_list = list.statistics();
         const renderer::FrameStatistics& of_blocks = blocks.statistics();
@@ -250,7 +250,7 @@ TEST_F(TileQueriesTest, BlocksTellEnoughForTheSamePicture) {
 
 TEST_F(TileQueriesTest, BlocksSufficeForPoolsFarTooSmall) {
     Renderer whole = make();
-    const Image expected = whole.render(view_);
+    const optics::Image expected = whole.render(view_);
     for (const double share : {0.3, 0.02}) {
         TreeOptions options = with_blocks();
         options.brick_pool_bytes =
@@ -271,7 +271,7 @@ TEST_F(TileQueriesTest, BlocksServeVolumesAndConstantTiles) {
     for (const std::size_t bytes : {std::size_t(8) << 20U, std::size_t(1) << 18U}) {
         TreeOptions options{.n = 2, .m = 8, .brick_pool_bytes = bytes};
         Renderer list(volume, ramp(20.0), options);
-        const Image expected = list.render(view);
+        const optics::Image expected = list.render(view);
         Renderer blocks(volume, ramp(20.0), with_blocks(options));
         EXPECT_EQ(blocks.render(view).rgba, expected.rgba) << bytes;
     }
@@ -290,7 +290,7 @@ TEST_F(TileQueriesTest, BlocksAndFewQueriesServeWindows) {
     view.camera.eye = {0.71, 0.53, 0.62};
     view.camera.target = {0.02, 0.01, 0.03};
     view.light.towards = {0.5, 0.9, 0.35};
-    const Image expected = make_deep(options).render(view);
+    const optics::Image expected = make_deep(options).render(view);
     EXPECT_EQ(make_deep(with_blocks(options)).render(view).rgba, expected.rgba);
     for (const int capacity : {1, 5}) {
         TreeOptions few = options;
@@ -309,7 +309,7 @@ TEST_F(TileQueriesTest, FewQueriesAndFewNodesEndTogether) {
     view_.width = 32;
     view_.height = 24;
     view_.pixel_error = 0.5;
-    const Image expected = make(enough).render(view_);
+    const optics::Image expected = make(enough).render(view_);
     for (const int capacity : {1, 2, 7}) {
         few.query_capacity = capacity;
         Renderer renderer = make(few);

@@ -16,7 +16,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::LevelOfDetail;
 using renderer::Renderer;
 using renderer::Traversal;
@@ -28,7 +28,7 @@ Renderer make_renderer(const scenes::Scene& scene, const TreeOptions& options) {
 }
 
 /// How many pixels differ, and which is the first.
-std::string difference(const Image& a, const Image& b) {
+std::string difference(const optics::Image& a, const optics::Image& b) {
     std::size_t count = 0;
     std::string first;
     for (std::size_t pixel = 0; pixel * 4 < a.rgba.size(); ++pixel) {
@@ -69,7 +69,7 @@ std::vector<View> hard_views(const scenes::Scene& scene) {
     view.width = 101;
     view.height = 67;
     view.pixel_error = 0.7;
-    view.camera = renderer::framing_camera(bounds, double(view.width) / view.height);
+    view.camera = optics::framing_camera(bounds, double(view.width) / view.height);
     std::vector<View> views{view};
     auto add = [&](const glm::dvec3& eye, const glm::dvec3& target, double yfov) {
         View other = view;
@@ -130,7 +130,7 @@ TEST_P(Shapes, EveryTraversalGivesThePictureOfRestarts) {
     Renderer mini_stack = make_renderer(scene, with);
     const std::vector<View> views = Shapes::views(scene);
     for (std::size_t i = 0; i < views.size(); ++i) {
-        const Image image = expected.render(views[i]);
+        const optics::Image image = expected.render(views[i]);
         EXPECT_EQ(difference(stackless.render(views[i]), image), "") << "stackless, view " << i;
         EXPECT_EQ(difference(mini_stack.render(views[i]), image), "") << "mini-stack, view " << i;
         if (i != 0) continue;
@@ -150,7 +150,7 @@ TEST_P(Shapes, LateStartsAndEarlyEndsChangeNothing) {
         const std::vector<View> views = Shapes::views(scene);
         std::size_t seen = 0;
         for (std::size_t i = 0; i < views.size(); ++i) {
-            const Image expected = plain.render(views[i]);
+            const optics::Image expected = plain.render(views[i]);
             // Cold, then with all that the view shows in the tree, where starts are latest.
             EXPECT_EQ(difference(ours.render(views[i]), expected), "") << "cold, view " << i;
             EXPECT_EQ(difference(ours.render(views[i]), expected), "") << "view " << i;
@@ -184,7 +184,7 @@ TEST_F(TraversalTest, MoreLevelsThanTheMiniStackHolds) {
     const TreeOptions deep{.n = 2, .m = 8, .max_resolution = 1 << 15, .traversal = Traversal::restart};
     TreeOptions with = deep;
     with.traversal = Traversal::mini_stack;
-    const Image expected = make_renderer(scene, deep).render(view);
+    const optics::Image expected = make_renderer(scene, deep).render(view);
     EXPECT_EQ(difference(make_renderer(scene, with).render(view), expected), "");
 }
 
@@ -192,9 +192,9 @@ TEST_F(TraversalTest, RowsAloneStartAsInTheWholePicture) {
     const scenes::Scene scene = scenes::make_builtin("knot");
     View view = hard_views(scene)[0];
     Renderer renderer = make_renderer(scene, {});
-    const Image whole = renderer.render(view);
+    const optics::Image whole = renderer.render(view);
     for (const renderer::Rows rows : {renderer::Rows{0, 5}, renderer::Rows{13, 40}, renderer::Rows{66, 1}}) {
-        const Image part = renderer.render_rows(view, rows);
+        const optics::Image part = renderer.render_rows(view, rows);
         const auto* first = whole.rgba.data() + std::size_t(rows.first) * std::size_t(view.width) * 4;
         EXPECT_TRUE(std::equal(part.rgba.begin(), part.rgba.end(), first)) << "rows from " << rows.first;
     }
@@ -206,10 +206,10 @@ TEST_F(TraversalTest, CoarserShadowRaysShadeAlmostTheSame) {
     view.pixel_error = 0.4;
     view.light.towards = {0.8, 0.5, 0.1};
     Renderer fine = make_renderer(scene, {});
-    const Image expected = fine.render(view);
+    const optics::Image expected = fine.render(view);
     view.shadow_pixel_error = 4.0;
     Renderer coarse = make_renderer(scene, {});
-    const Image ours = coarse.render(view);
+    const optics::Image ours = coarse.render(view);
     std::size_t different = 0;
     for (std::size_t k = 0; k < ours.rgba.size(); k += 4)
         different += std::abs(int(ours.rgba[k]) - int(expected.rgba[k])) > 32 ? 1 : 0;

@@ -13,7 +13,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::Renderer;
 using renderer::TreeOptions;
 using renderer::View;
@@ -39,7 +39,7 @@ View finest_view(const scenes::Scene& scene) {
     view.width = 120;
     view.height = 90;
     view.camera =
-        renderer::framing_camera(scenes::take_snapshot(scene).bounds, double(view.width) / view.height);
+        optics::framing_camera(scenes::take_snapshot(scene).bounds, double(view.width) / view.height);
     view.pixel_error = 1e-6;
     return view;
 }
@@ -49,7 +49,7 @@ struct Difference {
     std::string first;
 };
 
-Difference compare(const Image& a, const Image& b, int threshold) {
+Difference compare(const optics::Image& a, const optics::Image& b, int threshold) {
     Difference difference;
     EXPECT_EQ(a.rgba.size(), b.rgba.size());
     for (std::size_t pixel = 0; pixel * 4 < a.rgba.size(); ++pixel) {
@@ -79,12 +79,12 @@ TEST_P(EveryTreeShape, PictureEqualsTheOneOfAnotherShapeWithTheSameVoxels) {
     for (const double side : {1.0, -0.6}) {
         const glm::dvec3 away = view.camera.eye - view.camera.target;
         view.camera.eye = view.camera.target + glm::dvec3(side * away.x, away.y, away.z);
-        const Image picture = ours.render(view);
+        const optics::Image picture = ours.render(view);
         const Difference difference = compare(picture, other.render(view), 1);
         // Cells of other sizes round at other places: a ray along an edge may take the voxel on its other
         // side.
         EXPECT_LE(difference.pixels_over, picture.rgba.size() / 4 / 2000) << difference.first;
-        const Image again = ours.render(view);
+        const optics::Image again = ours.render(view);
         EXPECT_EQ(ours.statistics().bricks_produced, 0U);
         EXPECT_EQ(picture.rgba, again.rgba);
     }
@@ -99,7 +99,7 @@ TEST_P(ScarceTreeShape, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     view.height = 30;
     TreeOptions tight = options();
     Renderer roomy = make_renderer(scene, tight);
-    const Image expected = roomy.render(view);
+    const optics::Image expected = roomy.render(view);
     const std::size_t side = std::size_t(tight.m) + 2;
     tight.brick_pool_bytes = 2 * side * side * side * 6;  // two bricks
     tight.node_pool_bytes = std::size_t(tight.n * tight.n * tight.n) * 16 * 6;
@@ -111,10 +111,10 @@ TEST_P(ScarceTreeShape, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
 TEST_P(ScarceTreeShape, PictureAfterManyShortFramesIsThatOfOneLong) {
     const scenes::Scene scene = ball_over_floor();
     View view = finest_view(scene);
-    const Image expected = make_renderer(scene, options()).render(view);
+    const optics::Image expected = make_renderer(scene, options()).render(view);
     Renderer renderer = make_renderer(scene, options());
     for (int frame = 0; frame < 2000; ++frame) {
-        const Image ours = renderer.render_within(view, 30.0);
+        const optics::Image ours = renderer.render_within(view, 30.0);
         if (!renderer.statistics().converged) continue;
         EXPECT_EQ(ours.rgba, expected.rgba);
         return;
@@ -149,7 +149,7 @@ TEST_P(TwinOfShape, PictureEqualsThePlainCpuMarchOfTheSameBits) {
     const DenseVoxels voxels = dense_voxels(scene, resolution);
     Renderer renderer = make_renderer(scene, {.n = n, .m = m, .max_resolution = resolution});
     const View view = finest_view(scene);
-    const Image ours = renderer.render(view);
+    const optics::Image ours = renderer.render(view);
     // As in renderer_test: float against double, where a threshold is crossed.
     const Difference difference = compare(ours, march_dense(voxels, view), 2);
     EXPECT_LE(difference.pixels_over, ours.rgba.size() / 4 / 200) << difference.first;

@@ -17,7 +17,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::Renderer;
 using renderer::TransferFunction;
 using renderer::View;
@@ -38,7 +38,7 @@ struct LightError {
 };
 
 /// How far the picture of a ball around the world's origin is from what Lambert's law says of its normals.
-LightError light_error(const Image& image, const View& view, double radius, double albedo) {
+LightError light_error(const optics::Image& image, const View& view, double radius, double albedo) {
     LightError error;
     const glm::dvec3 light = glm::normalize(view.light.towards);
     for (int y = 0; y < view.height; ++y) {
@@ -128,9 +128,9 @@ TEST_F(VolumeLight, FogTakesOfTheLightWhatItsThicknessSays) {
     for (const glm::dvec3 towards : {glm::dvec3(0, 1, 0), glm::dvec3(0.3, 1, 0.2)}) {
         view.light.towards = towards;
         view.shadow = renderer::Shadow::none;
-        const Image lit = Renderer(volume, transfer, small_pool).render(view);
+        const optics::Image lit = Renderer(volume, transfer, small_pool).render(view);
         view.shadow = renderer::Shadow::hard;
-        const Image shadowed = Renderer(volume, transfer, small_pool).render(view);
+        const optics::Image shadowed = Renderer(volume, transfer, small_pool).render(view);
         const double expected = std::exp(-sigma * 16.0 / glm::normalize(towards).y);
         for (int i = 0; i < view.width * view.height; ++i) {
             const double ratio =
@@ -150,7 +150,7 @@ TEST_F(VolumeLight, WhatIsOpaqueStopsTheLight) {
     view.camera = {{32.0, 30.0, 32.0}, {32.0, 8.0, 33.0}, {0, 0, 1}, 0.5};
     view.pixel_error = 1e-6;
     view.light = {.towards = {0.1, 1, 0}, .ambient = 0.0F};
-    const Image image = Renderer(volume, transfer, small_pool).render(view);
+    const optics::Image image = Renderer(volume, transfer, small_pool).render(view);
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
         ASSERT_EQ(image.rgba[i], 0) << "pixel " << i / 4;
         ASSERT_EQ(image.rgba[i + 3], 255) << "pixel " << i / 4;
@@ -158,7 +158,7 @@ TEST_F(VolumeLight, WhatIsOpaqueStopsTheLight) {
     // A lamp between the floor and the layer is not in its shadow.
     view.light.positional = true;
     view.light.position = {32.0, 36.0, 32.0};
-    const Image lamp = Renderer(volume, transfer, small_pool).render(view);
+    const optics::Image lamp = Renderer(volume, transfer, small_pool).render(view);
     EXPECT_GT(lamp.rgba[std::size_t(4 * (6 * 16 + 8))], 128);
 }
 
@@ -178,9 +178,9 @@ View view_of_the_floor() {
 /// Light that arrives at each pixel of the floor, as a share of what would without a shadow.
 std::vector<double> shares_on_the_floor(const scenes::Volume& volume, const TransferFunction& transfer,
                                         View view) {
-    const Image shadowed = Renderer(volume, transfer, small_pool).render(view);
+    const optics::Image shadowed = Renderer(volume, transfer, small_pool).render(view);
     view.shadow = renderer::Shadow::none;
-    const Image lit = Renderer(volume, transfer, small_pool).render(view);
+    const optics::Image lit = Renderer(volume, transfer, small_pool).render(view);
     std::vector<double> shares;
     for (std::size_t i = 0; i < lit.rgba.size(); i += 4)
         shares.push_back(linear_of(shadowed.rgba[i]) / linear_of(lit.rgba[i]));
@@ -198,7 +198,7 @@ TEST_F(VolumeLight, PenumbraOfAnEdgeInAVolumeComesToTheClosedForm) {
     const TransferFunction transfer(
         {{0.0, glm::dvec3(1.0), 0.0}, {0.499, glm::dvec3(1.0), 0.0}, {0.5, glm::dvec3(1.0), 100.0}});
     View view = view_of_the_floor();
-    view.light.shape = renderer::LightShape::rectangle;
+    view.light.shape = optics::LightShape::rectangle;
     view.light.half_u = {6.0, 0.0, 0.0};
     view.light.half_v = {0.0, 0.0, 3.0};
     view.shadow_rays = 256;
@@ -235,7 +235,7 @@ TEST_F(VolumeLight, SoftLightThroughFogIsTheMeanOfWhatIsLeftOfIt) {
                                      {1.0, glm::dvec3(1.0), 50.0}});
     View view = view_of_the_floor();
     view.light.position = {32.0, 60.0, 32.0};
-    view.light.shape = renderer::LightShape::disk;
+    view.light.shape = optics::LightShape::disk;
     view.light.half_u = {30.0, 0.0, 0.0};
     view.light.half_v = {0.0, 0.0, 30.0};
     view.shadow_rays = 64;
@@ -265,17 +265,17 @@ TEST_F(VolumeLight, SoftShadowIsTheSameFromTinyPoolsAndWithinABudget) {
     View view;
     view.width = 40;
     view.height = 30;
-    view.camera = renderer::framing_camera({glm::dvec3(-1.0), glm::dvec3(1.0)}, 4.0 / 3.0);
+    view.camera = optics::framing_camera({glm::dvec3(-1.0), glm::dvec3(1.0)}, 4.0 / 3.0);
     view.pixel_error = 0.3;  // 96 voxels on 40 pixels
     view.light.angle = 0.2;
     view.shadow_rays = 8;
     Renderer roomy(volume, transfer, small_pool);
-    const Image expected = roomy.render(view);
+    const optics::Image expected = roomy.render(view);
     Renderer scarce(volume, transfer, {.brick_pool_bytes = 1U << 18U});
     EXPECT_EQ(scarce.render(view).rgba, expected.rgba);
     EXPECT_GT(scarce.statistics().bricks_evicted, 0U);
     Renderer hurried(volume, transfer, small_pool);
-    Image image = hurried.render_within(view, 0.0);
+    optics::Image image = hurried.render_within(view, 0.0);
     for (int frame = 0; frame < 2000 && !hurried.statistics().converged; ++frame)
         image = hurried.render_within(view, 0.0);
     EXPECT_TRUE(hurried.statistics().converged);

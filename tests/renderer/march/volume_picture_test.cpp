@@ -15,9 +15,9 @@
 namespace cairn::test {
 namespace {
 
+using optics::Image;
 using renderer::DenseField;
 using renderer::HollowSphere;
-using renderer::Image;
 using renderer::Renderer;
 using renderer::TransferFunction;
 using renderer::TreeOptions;
@@ -53,7 +53,7 @@ TEST_P(VolumeTrees, PictureFromBricksEqualsTheOneFromADenseTexture) {
     const auto [n, m] = GetParam();
     const scenes::Volume volume = blobs(glm::ivec3(64), 2, 20);
     const View view = glowing_view(volume.bounds(), 96, 72);
-    const Image dense =
+    const optics::Image dense =
         Renderer(volume, ramp(20.0), {.n = n, .m = 64, .brick_pool_bytes = 8U << 20U}, fog).render(view);
     Renderer bricks(volume, ramp(20.0), {.n = n, .m = m, .brick_pool_bytes = 8U << 20U}, fog);
     const PictureDifference difference = difference_of(bricks.render(view), dense);
@@ -76,14 +76,14 @@ TEST_P(VolumeTrees, BordersBetweenLevelsDoNotShow) {
     View view = glowing_view(slope.bounds(), 64, 48);
     view.camera = {{-0.1, 0.05, -0.9}, {0.1, 0.0, 1.0}, {0, 1, 0}, 0.5};
     const TreeOptions dense_options{.n = n, .m = 64, .brick_pool_bytes = 8U << 20U};
-    const Image dense = Renderer(slope, transfer, dense_options, fog).render(view);
+    const optics::Image dense = Renderer(slope, transfer, dense_options, fog).render(view);
     view.show = renderer::Show::levels;
     Renderer renderer(slope, transfer, {.n = n, .m = m, .brick_pool_bytes = 8U << 20U}, fog);
     bool mixed = false;  // pixels that show more than one level have a mixed colour
     for (const double pixel_error : {3.0, 2.0, 4.0, 1.5, 6.0, 8.0}) {
         if (mixed) break;
         view.pixel_error = pixel_error;
-        const Image levels = renderer.render(view);
+        const optics::Image levels = renderer.render(view);
         for (std::size_t i = 4; i < levels.rgba.size(); i += 4)
             mixed = mixed || levels.rgba[i] != levels.rgba[0] || levels.rgba[i + 1] != levels.rgba[1];
     }
@@ -100,7 +100,7 @@ TEST_P(VolumeTrees, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     view.light = {};
     view.shadow = renderer::Shadow::hard;
     Renderer roomy(volume, ramp(20.0), {.n = n, .m = m, .brick_pool_bytes = 8U << 20U});
-    const Image expected = roomy.render(view);
+    const optics::Image expected = roomy.render(view);
     const std::size_t side = std::size_t(m) + 2;
     const TreeOptions tight_options{
         .n = n, .m = m, .node_pool_bytes = 9 * 64 * 16, .brick_pool_bytes = 3 * side * side * side};
@@ -124,7 +124,7 @@ TEST_F(VolumePictures, UniformBallLetsThroughWhatItsChordSays) {
     const TransferFunction transfer({{0.0, glm::dvec3(1.0), 0.0}, {1.0, glm::dvec3(1.0), sigma}});
     Renderer renderer(ball, transfer, small_pool, fog);
     const View view = glowing_view({glm::dvec3(-1.0), glm::dvec3(1.0)});
-    const Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view);
     const double voxel = 2.0 / 256.0;
     int looked_at = 0;
     for (int y = 0; y < view.height; ++y) {
@@ -157,8 +157,8 @@ TEST_F(VolumePictures, EightTimesFinerStepsChangeOpacityByLessThanAHundredth) {
         const std::shared_ptr<const renderer::Field> field =
             sharp ? std::shared_ptr<const renderer::Field>(shell) : soft;
         for (const double extinction : {2.0, 20.0, 100.0}) {
-            const Image coarse = opacity(field, extinction, VolumeOptions{}.steps_per_voxel);
-            const Image fine = opacity(field, extinction, 8 * VolumeOptions{}.steps_per_voxel);
+            const optics::Image coarse = opacity(field, extinction, VolumeOptions{}.steps_per_voxel);
+            const optics::Image fine = opacity(field, extinction, 8 * VolumeOptions{}.steps_per_voxel);
             int largest = 0;
             for (std::size_t i = 3; i < fine.rgba.size(); i += 4)
                 largest = std::max(largest, std::abs(int(fine.rgba[i]) - int(coarse.rgba[i])));
@@ -199,7 +199,7 @@ TEST_F(VolumePictures, OpacityDoesNotDependOnTheSceneScale) {
     View view = glowing_view(volume.bounds());
     view.light = {};
     view.shadow = renderer::Shadow::hard;
-    const Image expected = Renderer(volume, ramp(20.0), small_pool).render(view);
+    const optics::Image expected = Renderer(volume, ramp(20.0), small_pool).render(view);
     for (const double scale : {1000.0, 1.0 / 1024.0}) {
         scenes::Volume scaled = volume;
         scaled.spacing *= scale;
@@ -207,7 +207,7 @@ TEST_F(VolumePictures, OpacityDoesNotDependOnTheSceneScale) {
         View from_there = view;
         from_there.camera.eye *= scale;
         from_there.camera.target *= scale;
-        const Image image = Renderer(scaled, ramp(20.0 / scale), small_pool).render(from_there);
+        const optics::Image image = Renderer(scaled, ramp(20.0 / scale), small_pool).render(from_there);
         const PictureDifference difference = difference_of(image, expected);
         EXPECT_LE(difference.largest, 1) << "scale " << scale << ": " << difference.worst;
     }
@@ -218,9 +218,10 @@ TEST_F(VolumePictures, FramesWithinABudgetEndWithTheWholePicture) {
     View view = glowing_view(volume.bounds());
     view.shadow = renderer::Shadow::hard;
     view.light = {};
-    const Image expected = Renderer(volume, ramp(20.0), {.m = 8, .brick_pool_bytes = 8U << 20U}).render(view);
+    const optics::Image expected =
+        Renderer(volume, ramp(20.0), {.m = 8, .brick_pool_bytes = 8U << 20U}).render(view);
     Renderer renderer(volume, ramp(20.0), {.m = 8, .brick_pool_bytes = 8U << 20U});
-    Image image;
+    optics::Image image;
     int frames = 0;
     do {
         image = renderer.render_within(view, 0.0);
@@ -261,9 +262,9 @@ TEST_F(VolumePictures, CopiesLookAsTheyDoSideBySideInMemory) {
     View view = glowing_view(eight.bounds(), 96, 72);
     for (const double pixel_error : {1e-6, 1.0, 4.0}) {
         view.pixel_error = pixel_error;
-        const Image expected =
+        const optics::Image expected =
             Renderer(eight, ramp(20.0), {.n = 2, .m = 8, .brick_pool_bytes = 8U << 20U}).render(view);
-        const Image image =
+        const optics::Image image =
             Renderer(copies, ramp(20.0), {.n = 2, .m = 8, .brick_pool_bytes = 8U << 20U}).render(view);
         // Means of 16-bit means, rounded in other places.
         const PictureDifference difference = difference_of(image, expected);

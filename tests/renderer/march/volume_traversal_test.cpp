@@ -11,7 +11,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::Renderer;
 using renderer::Traversal;
 using renderer::TreeOptions;
@@ -32,14 +32,14 @@ TEST_F(VolumeTraversal, TilesWithoutFullChildrenHideNothingBehindThem) {
     view.pixel_error = 0.25;
     for (const int n : {2, 4}) {
         for (const bool block_starts : {false, true}) {
-            Image expected;
+            optics::Image expected;
             for (const Traversal traversal :
                  {Traversal::restart, Traversal::stackless, Traversal::mini_stack}) {
                 TreeOptions options{.n = n, .m = 8, .brick_pool_bytes = 8U << 20U};
                 options.traversal = traversal;
                 options.block_starts = block_starts;
                 Renderer renderer(volume, ramp(400.0, 0.01), options);
-                const Image first = renderer.render(view);
+                const optics::Image first = renderer.render(view);
                 if (expected.rgba.empty()) expected = first;
                 EXPECT_EQ(first.rgba, expected.rgba) << "n " << n << ", traversal " << int(traversal);
                 renderer.forget_picture();

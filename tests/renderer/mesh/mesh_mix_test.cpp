@@ -28,7 +28,7 @@ void expect_depth_order(const scenes::Scene& scene, const scenes::Scene& mesh, c
                         int resolution) {
     Renderer renderer = voxels_of(scene, resolution);
     renderer.set_mix({.meshes = raster(mesh)});
-    const Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view);
     const reference::ReferenceCamera camera = reference::camera_of(view.camera);
     const scenes::Snapshot scene_now = scenes::take_snapshot(scene);
     const scenes::Snapshot mesh_now = scenes::take_snapshot(mesh);
@@ -106,11 +106,11 @@ TEST_F(MeshMix, VoxelsCoverAMeshBehindThemAsTheyCoverABackground) {
     view.light.towards = glm::normalize(glm::dvec3(1.0, 0.4, 0.05));  // shadows fall far to the left
     Renderer renderer = voxels_of(ball, 128);
     renderer.set_mix({.meshes = raster(wall), .mesh_shadows = true});
-    const Image with_wall = renderer.render(view);
+    const optics::Image with_wall = renderer.render(view);
     renderer.set_mix({});
     const double facing = glm::dot(view.light.towards, glm::dvec3(0.0, 0.0, 1.0));
     view.background = color * float(0.25 * 0.75 + 0.75 * facing);
-    const Image with_background = renderer.render(view);
+    const optics::Image with_background = renderer.render(view);
     int translucent = 0;
     for (std::size_t i = 3; i < with_background.rgba.size(); i += 4) {
         translucent += with_background.rgba[i] > 20 && with_background.rgba[i] < 235 ? 1 : 0;
@@ -134,7 +134,7 @@ TEST_F(MeshMix, ShadowOfVoxelsOnAMeshLiesWhereGeometryPutsIt) {
     view.light.ambient = 0.0F;
     Renderer renderer = voxels_of(square, 512);
     renderer.set_mix({.meshes = raster(floor), .mesh_shadows = true});
-    const Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view);
     const PictureRays rays(view);
     int dark = 0;
     int lit = 0;
@@ -166,7 +166,7 @@ Shading shade_own_voxels(const scenes::Scene& scene, int resolution, bool are_vo
     View view;
     view.width = 155;
     view.height = 115;
-    view.camera = renderer::framing_camera(snapshot.bounds, 155.0 / 115.0);
+    view.camera = optics::framing_camera(snapshot.bounds, 155.0 / 115.0);
     view.pixel_error = 1e-6;
     view.light.ambient = 0.0F;
     Renderer renderer = voxels_of(scene, resolution);
@@ -176,7 +176,7 @@ Shading shade_own_voxels(const scenes::Scene& scene, int resolution, bool are_vo
                       .mesh_shadows = true,
                       .meshes_are_voxelized = are_voxelized,
                       .proxy = raster(nowhere)});
-    const Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view);
     const auto truth = reference::ImageTracer(scene, snapshot)
                            .trace({view.camera.eye, view.camera.target, view.camera.up, view.camera.yfov},
                                   {.towards = view.light.towards}, view.width, view.height);
@@ -229,7 +229,7 @@ TEST_F(MeshMix, AnAlphaMaskCutsTheMeshWhereTheTextureSaysSo) {
     renderer.set_mix({.meshes = raster(half)});
     View view = flat_view({0.0, 3.0, 0.0}, {0.0, 0.0, 0.0}, 64, 64);
     view.camera.up = {0.0, 0.0, -1.0};
-    const Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view);
     const double pixels = 64.0 / (2.0 * std::tan(0.5 * view.camera.yfov));  // across a unit at distance 1
     for (int x = 0; x < 64; ++x) {
         const double on_mesh = (x + 0.5 - 32.0) / pixels * 2.5;
@@ -253,13 +253,13 @@ TEST_F(MeshMix, ColoursOfAMeshAreThoseOfItsVoxels) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     View view;
     view.width = view.height = 96;
-    view.camera = renderer::framing_camera(snapshot.bounds, 1.0);
+    view.camera = optics::framing_camera(snapshot.bounds, 1.0);
     view.shadow = renderer::Shadow::none;
     Renderer renderer = voxels_of(scene, 512);
-    const Image voxels = renderer.render(view);
+    const optics::Image voxels = renderer.render(view);
     const scenes::Scene nowhere = colored(quad({0, 900, 0}, {1, 900, 0}, {1, 901, 0}, {0, 901, 0}), red);
     renderer.set_mix({.meshes = raster(scene), .proxy = raster(nowhere)});
-    const Image mesh = renderer.render(view);
+    const optics::Image mesh = renderer.render(view);
     EXPECT_LE(others(voxels, mesh, 6), 96 * 96 / 12) << "more than edges differ";
 }
 
@@ -287,10 +287,10 @@ struct Everything {
 
 TEST_F(MeshMix, RowsRenderedApartAreThoseOfTheWholePicture) {
     const Everything all;
-    const Image whole = all.renderer().render(all.view);
+    const optics::Image whole = all.renderer().render(all.view);
     Renderer renderer = all.renderer();
     for (const renderer::Rows rows : {renderer::Rows{0, 7}, renderer::Rows{7, 30}, renderer::Rows{37, 24}}) {
-        const Image part = renderer.render_rows(all.view, rows);
+        const optics::Image part = renderer.render_rows(all.view, rows);
         ASSERT_EQ(part.height, rows.count);
         const auto first = whole.rgba.begin() + std::ptrdiff_t(rows.first) * whole.width * 4;
         EXPECT_TRUE(std::equal(part.rgba.begin(), part.rgba.end(), first)) << "rows from " << rows.first;
@@ -305,11 +305,11 @@ TEST_F(MeshMix, RowsFromTwoStripsOfAMeshAreThoseOfEachAlone) {
     ASSERT_LT(border, all.view.height);
     all.mix.proxy = nullptr;
     Renderer renderer = all.renderer();
-    const Image both = renderer.render_rows(all.view, {border - 1, 2});
+    const optics::Image both = renderer.render_rows(all.view, {border - 1, 2});
     ASSERT_EQ(both.height, 2);
     int shown = 0;
     for (const int row : {1, 0}) {
-        const Image one = renderer.render_rows(all.view, {border - 1 + row, 1});
+        const optics::Image one = renderer.render_rows(all.view, {border - 1 + row, 1});
         const auto first = both.rgba.begin() + std::ptrdiff_t(row) * both.width * 4;
         EXPECT_TRUE(std::equal(one.rgba.begin(), one.rgba.end(), first)) << "row " << border - 1 + row;
         for (std::size_t i = 0; i < one.rgba.size(); i += 4)
@@ -320,9 +320,9 @@ TEST_F(MeshMix, RowsFromTwoStripsOfAMeshAreThoseOfEachAlone) {
 
 TEST_F(MeshMix, FramesWithinABudgetComeToTheSamePicture) {
     const Everything all;
-    const Image whole = all.renderer().render(all.view);
+    const optics::Image whole = all.renderer().render(all.view);
     Renderer renderer = all.renderer();
-    Image image = renderer.render_within(all.view, 0.0);
+    optics::Image image = renderer.render_within(all.view, 0.0);
     int frames = 1;
     for (; !renderer.statistics().converged && frames < 200; ++frames)
         image = renderer.render_within(all.view, 5.0);
@@ -332,7 +332,7 @@ TEST_F(MeshMix, FramesWithinABudgetComeToTheSamePicture) {
 
 TEST_F(MeshMix, APoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const Everything all;
-    const Image expected = all.renderer().render(all.view);
+    const optics::Image expected = all.renderer().render(all.view);
     Renderer tight = all.renderer(4U * 18 * 18 * 18 * 6);  // four bricks or so
     EXPECT_EQ(others(tight.render(all.view), expected, 0), 0);
     EXPECT_GT(tight.statistics().bricks_evicted, 0U);
@@ -343,7 +343,7 @@ TEST_F(MeshMix, TakenAwayItLeavesThePictureOfVoxelsAlone) {
     Renderer renderer = all.renderer();
     (void)renderer.render(all.view);
     renderer.set_mix({});
-    const Image after = renderer.render(all.view);
+    const optics::Image after = renderer.render(all.view);
     Renderer fresh = all.renderer();
     fresh.set_mix({});
     EXPECT_EQ(others(after, fresh.render(all.view), 0), 0);
@@ -352,7 +352,7 @@ TEST_F(MeshMix, TakenAwayItLeavesThePictureOfVoxelsAlone) {
 
 TEST_F(MeshMix, AMillionUnitsFromTheOriginShowsTheSame) {
     const Everything here;
-    const Image expected = here.renderer().render(here.view);
+    const optics::Image expected = here.renderer().render(here.view);
     const glm::dvec3 away(1e6, -3e6, 2e6);
     const auto moved = [&](scenes::Scene scene) {
         scene.nodes[0].trs.translation += away;
@@ -372,7 +372,7 @@ TEST_F(MeshMix, AMillionUnitsFromTheOriginShowsTheSame) {
 }
 
 TEST(MeshMixContexts, OsmesaAndEglShowTheSame) {
-    std::vector<Image> pictures;
+    std::vector<optics::Image> pictures;
     for (const gl::ContextKind kind : {gl::ContextKind::osmesa, gl::ContextKind::egl}) {
         std::unique_ptr<gl::Context> context;
         try {

@@ -28,11 +28,11 @@ TEST_F(MeshProxy, AProxyAroundEverythingChangesNoPixel) {
         view.shadow = renderer::Shadow::hard;
         view.light.ambient = 0.25F;
         Renderer renderer = voxels_of(scene, 128);
-        const Image without = renderer.render(view);
+        const optics::Image without = renderer.render(view);
         EXPECT_LE(renderer.statistics().rays_launched, 155U * 115U);
         EXPECT_GT(renderer.statistics().rays_launched, 0U);
         renderer.set_mix({.proxy = raster(box)});
-        const Image with = renderer.render(view);
+        const optics::Image with = renderer.render(view);
         EXPECT_EQ(others(with, without, 0), 0) << "eye " << eye.x;
         EXPECT_GT(renderer.statistics().rays_launched, 0U);
     }
@@ -45,7 +45,7 @@ TEST_F(MeshProxy, OnlyPixelsOfTheProxyLaunchRays) {
     const View view = flat_view({1.1, 1.4, 6.3}, {0.9, 1.0, 0.0});
     Renderer renderer = voxels_of(ball_over_floor(), 128);
     renderer.set_mix({.proxy = raster(box)});
-    const Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view);
     const PictureRays rays(view);
     int surely = 0;
     int doubtful = 0;
@@ -72,7 +72,7 @@ TEST_F(MeshProxy, OnlyPixelsOfTheProxyLaunchRays) {
 void expect_cut_by(const scenes::Scene& proxy, const View& view, const scenes::Scene& scene, int resolution) {
     Renderer renderer = voxels_of(scene, resolution);
     renderer.set_mix({.proxy = raster(proxy)});
-    const Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view);
     const std::vector<WorldTriangle> scene_faces = world_triangles(scenes::take_snapshot(scene));
     const std::vector<WorldTriangle> proxy_faces = world_triangles(scenes::take_snapshot(proxy));
     const double margin = 2.0 * voxel_side(scene, resolution);
@@ -149,7 +149,7 @@ TEST_F(MeshProxy, AProxyShowsTheMiddleOfThreeSheetsAlone) {
     const View view = flat_view({0.0, 0.0, 6.0}, {0.0, 0.0, 0.0}, 64, 64);
     EXPECT_GT(at(renderer.render(view), 32, 32).b, 100);
     renderer.set_mix({.proxy = raster(box)});
-    const Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view);
     for (int y = 26; y < 38; ++y) {
         for (int x = 26; x < 38; ++x) {
             const glm::ivec4 pixel = at(image, x, y);

@@ -189,7 +189,7 @@ TEST_F(MeshRasterTest, NearestDistanceIsEmbreesButForSilhouettes) {
         View view;
         view.width = 203;
         view.height = 151;
-        view.camera = renderer::framing_camera(scenes::take_snapshot(scene).bounds, 203.0 / 151.0);
+        view.camera = optics::framing_camera(scenes::take_snapshot(scene).bounds, 203.0 / 151.0);
         const Disagreement found = against_embree(scene, view);
         // Vertices are rounded to a 256th of a pixel: every so many silhouettes lie on the other side of a
         // centre.
@@ -206,7 +206,7 @@ TEST_F(MeshRasterTest, NearestDistanceOfRealScenesIsEmbreesButForSilhouettes) {
         View view;
         view.width = 203;
         view.height = 151;
-        view.camera = renderer::framing_camera(scenes::take_snapshot(scene).bounds, 203.0 / 151.0);
+        view.camera = optics::framing_camera(scenes::take_snapshot(scene).bounds, 203.0 / 151.0);
         const Disagreement found = against_embree(scene, view);
         EXPECT_GT(found.covered, 203 * 151 / 20) << name;
         EXPECT_LE(found.pixels, 0.003 * found.covered) << name << ", " << found.first;

@@ -14,7 +14,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::Renderer;
 using renderer::TreeOptions;
 using renderer::TreeShape;
@@ -85,8 +85,8 @@ TEST_P(ConstantTiles, HoldNoBrickAndCoverAsTheirBricksWould) {
     view.shadow = renderer::Shadow::none;
     Boxed with = make_boxed(tree(), box(true));
     Boxed without = make_boxed(tree(), box(false));
-    const Image ours = with.renderer.render(view);
-    const Image bricks = without.renderer.render(view);
+    const optics::Image ours = with.renderer.render(view);
+    const optics::Image bricks = without.renderer.render(view);
     EXPECT_GT(with.renderer.statistics().constant_tiles, 0U);
     EXPECT_EQ(without.renderer.statistics().constant_tiles, 0U);
     EXPECT_EQ(with.renderer.statistics().bricks_resident + with.renderer.statistics().constant_tiles,
@@ -106,7 +106,7 @@ TEST_P(ConstantTiles, HaveTheColourOfTheirMean) {
     View view = view_of_box(1e-6);
     view.shadow = renderer::Shadow::none;
     view.light.ambient = 1.0F;
-    const Image ours = make_boxed(tree(), box(true)).renderer.render(view);
+    const optics::Image ours = make_boxed(tree(), box(true)).renderer.render(view);
     const double margin = double(GetParam().margin) / GetParam().n;
     const double voxel =
         1.0 / renderer::make_tree_shape(GetParam().n, GetParam().m, GetParam().max_resolution).resolution();
@@ -137,11 +137,11 @@ TEST_P(ConstantTiles, HaveTheColourOfTheirMean) {
 
 TEST_P(ConstantTiles, CastTheShadowsThatTheirBricksWould) {
     const View view = view_of_box(1e-6);
-    const Image ours = make_boxed(tree(), box(true)).renderer.render(view);
-    const Image bricks = make_boxed(tree(), box(false)).renderer.render(view);
+    const optics::Image ours = make_boxed(tree(), box(true)).renderer.render(view);
+    const optics::Image bricks = make_boxed(tree(), box(false)).renderer.render(view);
     View unlit = view;
     unlit.shadow = renderer::Shadow::none;
-    const Image without_shadow = make_boxed(tree(), box(true)).renderer.render(unlit);
+    const optics::Image without_shadow = make_boxed(tree(), box(true)).renderer.render(unlit);
     const double margin = double(GetParam().margin) / GetParam().n;
     int in_shadow = 0;
     for (int y = 0; y < view.height; ++y) {
@@ -158,7 +158,7 @@ TEST_P(ConstantTiles, CastTheShadowsThatTheirBricksWould) {
 
 TEST_P(ConstantTiles, PictureDoesNotDependOnPoolsNorOnTheFramesBefore) {
     const View view = view_of_box(1e-6);
-    const Image expected = make_boxed(tree(), box(true)).renderer.render(view);
+    const optics::Image expected = make_boxed(tree(), box(true)).renderer.render(view);
     TreeOptions tight = tree();
     const std::size_t side = std::size_t(tight.m) + 2;
     tight.brick_pool_bytes = 2 * side * side * side * 9;
@@ -167,7 +167,7 @@ TEST_P(ConstantTiles, PictureDoesNotDependOnPoolsNorOnTheFramesBefore) {
     View little = view;
     little.width = 24;
     little.height = 18;
-    const Image small_picture = small.renderer.render(little);
+    const optics::Image small_picture = small.renderer.render(little);
     EXPECT_EQ(small_picture.rgba, make_boxed(tree(), box(true)).renderer.render(little).rgba);
     EXPECT_LE(small.renderer.statistics().node_pool_bytes, tight.node_pool_bytes);
 
@@ -176,7 +176,7 @@ TEST_P(ConstantTiles, PictureDoesNotDependOnPoolsNorOnTheFramesBefore) {
     EXPECT_EQ(used.renderer.render(view).rgba, expected.rgba);
     Boxed hasty = make_boxed(tree(), box(true));
     for (int frame = 0; frame < 2000; ++frame) {
-        const Image image = hasty.renderer.render_within(view, 20.0);
+        const optics::Image image = hasty.renderer.render_within(view, 20.0);
         if (!hasty.renderer.statistics().converged) continue;
         EXPECT_EQ(image.rgba, expected.rgba);
         return;
@@ -189,7 +189,7 @@ TEST_P(ConstantTiles, TilesOfLowFrequencyAreShownAsTheyAreAtEveryDistance) {
     options.low_frequency = true;
     const View view = view_of_box(1e-6);
     Boxed fresh = make_boxed(tree(), options);
-    const Image expected = fresh.renderer.render(view);
+    const optics::Image expected = fresh.renderer.render(view);
     const TreeShape shape = renderer::make_tree_shape(GetParam().n, GetParam().m, GetParam().max_resolution);
     int deepest_low = 0;
     int deepest_high = 0;

@@ -120,7 +120,7 @@ TEST_F(GlTest, TheSpongeHasHolesThatShowTheBackground) {
     view.camera.eye = {0.5, 0.5, 3.0};
     view.camera.target = {0.5, 0.5, 0.5};
     view.camera.yfov = 2.0 * std::atan(0.5 / 2.0);
-    const renderer::Image image = sponge.render(view);
+    const optics::Image image = sponge.render(view);
     auto alpha = [&](double x, double y) {  // of a place of the front
         const auto column = std::size_t(x * 91.0);
         const auto row = std::size_t((1.0 - y) * 91.0);

@@ -51,7 +51,7 @@ Disagreement disagreement_of(const scenes::Scene& scene, int size, int max_resol
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     View view;
     view.width = view.height = size;
-    view.camera = renderer::framing_camera(snapshot.bounds, 1.0);
+    view.camera = optics::framing_camera(snapshot.bounds, 1.0);
     const reference::ImageTracer tracer(scene, snapshot);
     const reference::ReferenceImage truth =
         tracer.trace({view.camera.eye, view.camera.target, view.camera.up, view.camera.yfov},

@@ -38,7 +38,7 @@ View view_of(const scenes::Bounds& bounds, int width, int height, int rays) {
     View view;
     view.width = width;
     view.height = height;
-    view.camera = renderer::framing_camera(bounds, double(width) / height);
+    view.camera = optics::framing_camera(bounds, double(width) / height);
     const glm::dvec3 middle = 0.5 * (bounds.low + bounds.high);
     const double size = glm::length(bounds.high - bounds.low);
     view.light.positional = true;
@@ -65,7 +65,7 @@ TEST_F(PyramidShadows, PenumbraOfASquareComesToTheClosedForm) {
     view.camera = {.eye = {0.0, 8.0, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0.0, 0.0, -1.0}, .yfov = 0.5};
     view.light.positional = true;
     view.light.position = {0.1, 3.0, 0.0};
-    view.light.shape = renderer::LightShape::rectangle;
+    view.light.shape = optics::LightShape::rectangle;
     view.light.half_u = {0.4, 0.0, 0.0};
     view.light.half_v = {0.0, 0.0, 0.4};
     const PictureRays rays(view);

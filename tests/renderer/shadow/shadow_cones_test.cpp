@@ -14,7 +14,7 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
+using optics::Image;
 using renderer::Renderer;
 using renderer::View;
 
@@ -61,7 +61,7 @@ View knot_view(int rays, bool cones) {
     view.width = 60;
     view.height = 45;
     view.camera =
-        renderer::framing_camera(scenes::take_snapshot(scenes::make_builtin("knot")).bounds, 60.0 / 45.0);
+        optics::framing_camera(scenes::take_snapshot(scenes::make_builtin("knot")).bounds, 60.0 / 45.0);
     view.light = {.positional = true, .position = {3.0, 5.0, 3.0}, .radius = 0.7};
     view.shadow_rays = rays;
     view.shadow_cones = cones;
@@ -76,12 +76,12 @@ Renderer knot(const renderer::TreeOptions& options) {
 TEST_F(ShadowCones, PictureDependsOnTheViewAlone) {
     const View view = knot_view(4, true);
     Renderer large = knot({.max_resolution = 1024});
-    const Image picture = large.render(view);
+    const optics::Image picture = large.render(view);
     Renderer small = knot({.max_resolution = 1024, .brick_pool_bytes = 600U << 10U, .query_capacity = 50});
     EXPECT_EQ(small.render(view).rgba, picture.rgba) << "a pool of few bricks";
     EXPECT_GT(small.statistics().bricks_evicted, 0U) << "the pool was not small";
     Renderer hasty = knot({.max_resolution = 1024});
-    Image refined = hasty.render_within(view, 1.0);
+    optics::Image refined = hasty.render_within(view, 1.0);
     for (int frame = 0; frame < 400 && !hasty.statistics().converged; ++frame)
         refined = hasty.render_within(view, 5.0);
     EXPECT_TRUE(hasty.statistics().converged);
@@ -89,7 +89,7 @@ TEST_F(ShadowCones, PictureDependsOnTheViewAlone) {
 }
 
 TEST_F(ShadowCones, EveryKindOfTreeTakesThem) {
-    const auto mean = [](const renderer::LightShares& found) {
+    const auto mean = [](const optics::LightShares& found) {
         double sum = 0.0;
         int seen = 0;
         for (const float share : found.shares) {

@@ -18,10 +18,10 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Image;
-using renderer::Light;
-using renderer::LightShape;
-using renderer::LightShares;
+using optics::Image;
+using optics::Light;
+using optics::LightShape;
+using optics::LightShares;
 using renderer::Renderer;
 using renderer::View;
 
@@ -49,7 +49,7 @@ public:
         view.pixel_error = 1e-6;
         view.light.positional = true;
         view.light.position = {0.0, light_height, 0.0};
-        view.light.shape = LightShape::rectangle;
+        view.light.shape = optics::LightShape::rectangle;
         view.light.half_u = {light_half, 0.0, 0.0};
         view.light.half_v = {0.0, 0.0, light_half};
         return view;
@@ -69,7 +69,7 @@ public:
         return 1.0 - hidden(point.x) * hidden(point.z);
     }
 
-    LightShares shares(const View& view) { return renderer_.light_shares(view); }
+    optics::LightShares shares(const View& view) { return renderer_.light_shares(view); }
     Renderer& renderer() { return renderer_; }
 
 private:
@@ -89,7 +89,7 @@ TEST_F(ShadowRays, PenumbraOfASquareComesToTheClosedForm) {
     for (const auto& [rays, limit] : {std::pair{4, 0.14}, {16, 0.04}, {64, 0.013}, {256, 0.008}}) {
         View view = SquareOverFloor::view();
         view.shadow_rays = rays;
-        const LightShares found = scene.shares(view);
+        const optics::LightShares found = scene.shares(view);
         double squares = 0.0;
         int penumbra = 0;
         for (int y = 0; y < view.height; ++y) {
@@ -115,10 +115,11 @@ TEST_F(ShadowRays, PenumbraIsSymmetric) {
     SquareOverFloor scene;
     View view = SquareOverFloor::view();
     view.shadow_rays = 256;
-    for (const LightShape shape : {LightShape::rectangle, LightShape::disk, LightShape::sphere}) {
+    for (const optics::LightShape shape :
+         {optics::LightShape::rectangle, optics::LightShape::disk, optics::LightShape::sphere}) {
         view.light.shape = shape;
         view.light.radius = light_half;
-        const LightShares found = scene.shares(view);
+        const optics::LightShares found = scene.shares(view);
         const auto at = [&](int x, int y) { return double(found.shares[std::size_t(y * view.width + x)]); };
         double sum = 0.0;
         int partial = 0;
@@ -140,10 +141,10 @@ TEST_F(ShadowRays, ALightIsHalfSeenWhereItsMiddleTouchesAnEdge) {
     // The hard shadow's edge is where half of any light with a point symmetry is seen past a straight edge.
     SquareOverFloor scene;
     View view = SquareOverFloor::view();
-    view.light.shape = LightShape::disk;
-    const LightShares hard = scene.shares(view);
+    view.light.shape = optics::LightShape::disk;
+    const optics::LightShares hard = scene.shares(view);
     view.shadow_rays = 128;
-    const LightShares soft = scene.shares(view);
+    const optics::LightShares soft = scene.shares(view);
     const auto row = std::size_t(view.height / 2) * std::size_t(view.width);
     int edges = 0;
     for (std::size_t x = 1; x < std::size_t(view.width); ++x) {
@@ -159,7 +160,7 @@ View knot_view(int rays) {
     view.width = 90;
     view.height = 67;
     view.camera =
-        renderer::framing_camera(scenes::take_snapshot(scenes::make_builtin("knot")).bounds, 90.0 / 67.0);
+        optics::framing_camera(scenes::take_snapshot(scenes::make_builtin("knot")).bounds, 90.0 / 67.0);
     view.light = {.positional = true, .position = {3.0, 5.0, 3.0}, .radius = 0.7};
     view.shadow_rays = rays;
     return view;
@@ -174,7 +175,7 @@ TEST_F(ShadowRays, OneRayOrAPointIsAHardShadow) {
     Renderer renderer = knot({.max_resolution = 512});
     View point = knot_view(1);
     point.light.radius = 0.0;
-    const Image hard = renderer.render(point);
+    const optics::Image hard = renderer.render(point);
     EXPECT_EQ(renderer.render(knot_view(1)).rgba, hard.rgba);
     point.shadow_rays = 64;
     EXPECT_EQ(renderer.render(point).rgba, hard.rgba);
@@ -184,18 +185,18 @@ TEST_F(ShadowRays, OneRayOrAPointIsAHardShadow) {
 TEST_F(ShadowRays, PictureDoesNotDependOnThePoolsNorOnRowsNorOnFramesBefore) {
     const View view = knot_view(24);
     Renderer large = knot({.max_resolution = 1024});
-    const Image picture = large.render(view);
+    const optics::Image picture = large.render(view);
     large.forget_picture();
     EXPECT_EQ(large.render(view).rgba, picture.rgba) << "a second frame";
     Renderer small = knot({.max_resolution = 1024, .brick_pool_bytes = 600U << 10U, .query_capacity = 50});
     EXPECT_EQ(small.render(view).rgba, picture.rgba) << "a pool of few bricks";
     EXPECT_GT(small.statistics().bricks_evicted, 0U) << "the pool was not small";
     EXPECT_GT(small.statistics().passes, large.statistics().passes);
-    const Image rows = small.render_rows(view, {31, 9});
+    const optics::Image rows = small.render_rows(view, {31, 9});
     const auto first = picture.rgba.begin() + 31L * view.width * 4;
     EXPECT_TRUE(std::equal(rows.rgba.begin(), rows.rgba.end(), first)) << "rows apart";
     Renderer hasty = knot({.max_resolution = 1024});
-    Image refined = hasty.render_within(view, 1.0);
+    optics::Image refined = hasty.render_within(view, 1.0);
     for (int frame = 0; frame < 400 && !hasty.statistics().converged; ++frame)
         refined = hasty.render_within(view, 5.0);
     EXPECT_TRUE(hasty.statistics().converged);
@@ -210,7 +211,7 @@ TEST_F(ShadowRays, HundredsOfLongRaysPauseAndComeToAnEnd) {
     view.shadow_pixel_error = 1.0 / 64.0;
     Renderer renderer =
         knot({.n = 2, .m = 8, .max_resolution = 2048, .traversal = renderer::Traversal::restart});
-    const Image first = renderer.render(view);
+    const optics::Image first = renderer.render(view);
     EXPECT_GT(renderer.statistics().passes, 3);
     renderer.forget_picture();
     EXPECT_EQ(renderer.render(view).rgba, first.rgba);

@@ -25,8 +25,8 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 using glm::vec3;
-using renderer::LightShape;
-using renderer::LightShares;
+using optics::LightShape;
+using optics::LightShares;
 using renderer::Renderer;
 using renderer::View;
 using Corners = std::vector<vec3>;
@@ -57,7 +57,7 @@ View lit_from(const dvec3& place) {
 
 View lit_by_square(const dvec3& middle, double half_x, double half_z, int rays) {
     View view = lit_from(middle);
-    view.light.shape = LightShape::rectangle;
+    view.light.shape = optics::LightShape::rectangle;
     view.light.half_u = {half_x, 0.0, 0.0};
     view.light.half_v = {0.0, 0.0, half_z};
     view.shadow_rays = rays;
@@ -82,7 +82,7 @@ dvec3 floor_point(const View& view, int x, int y) {
 }
 
 /// Calls for every pixel with its point of the floor and its share of the light.
-void each(const LightShares& found, const View& view,
+void each(const optics::LightShares& found, const View& view,
           const std::function<void(const dvec3&, double)>& judge) {
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x)
@@ -108,7 +108,7 @@ public:
     }
 
     [[nodiscard]] double voxel() const { return voxel_; }
-    [[nodiscard]] LightShares shares(const View& view) { return renderer_.light_shares(view); }
+    [[nodiscard]] optics::LightShares shares(const View& view) { return renderer_.light_shares(view); }
     void each_pixel(const View& view, const std::function<void(const dvec3&, double)>& judge) {
         each(shares(view), view, judge);
     }
@@ -242,7 +242,7 @@ TEST_F(VoxelShadowLimits, LightThatTouchesItsOccluder) {
     view.light.radius = 0.15;
     view.shadow_rays = 64;
     const std::vector<double> truth = scene.truth(view, reference::AreaLight::Shape::sphere);
-    const LightShares found = scene.shares(view);
+    const optics::LightShares found = scene.shares(view);
     double sum = 0.0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
         ASSERT_NEAR(found.shares[i], truth[i], 0.05) << "pixel " << i;
@@ -424,9 +424,9 @@ TEST_F(VoxelShadowLimits, MoreThanOneLight) {
     const View whole = lit_by_square({0.0, 3.0, 0.0}, 0.4, 0.4, 128);
     const View left = lit_by_square({-0.2, 3.0, 0.0}, 0.2, 0.4, 128);
     const View right = lit_by_square({0.2, 3.0, 0.0}, 0.2, 0.4, 128);
-    const LightShares of_whole = scene.shares(whole);
-    const LightShares of_left = scene.shares(left);
-    const LightShares of_right = scene.shares(right);
+    const optics::LightShares of_whole = scene.shares(whole);
+    const optics::LightShares of_left = scene.shares(left);
+    const optics::LightShares of_right = scene.shares(right);
     const std::vector<double> truth_left = scene.truth(left, reference::AreaLight::Shape::rectangle);
     const std::vector<double> truth_right = scene.truth(right, reference::AreaLight::Shape::rectangle);
     double squares = 0.0;

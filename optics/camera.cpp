@@ -1,9 +1,9 @@
-#include "renderer/camera.h"
+#include "optics/camera.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace cairn::renderer {
+namespace cairn::optics {
 
 Camera framing_camera(const scenes::Bounds& bounds, double aspect) {
     Camera camera;
@@ -39,4 +39,4 @@ Camera extrapolated(const Camera& before, const Camera& now) {
     return glm::length(glm::cross(forward, next.up)) > least ? next : now;
 }
 
-}  // namespace cairn::renderer
+}  // namespace cairn::optics

@@ -1,4 +1,4 @@
-#include "renderer/shadow/rectangle_light.h"
+#include "renderer/shadow/shadow_frustum.h"
 
 #include <algorithm>
 #include <array>

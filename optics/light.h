@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-namespace cairn::renderer {
+namespace cairn::optics {
 
 /// What of a positional light there is around its middle.
 enum class LightShape : std::uint8_t {
@@ -41,4 +41,4 @@ struct Light {
     return glm::normalize(light.positional ? light.position - point : light.towards);
 }
 
-}  // namespace cairn::renderer
+}  // namespace cairn::optics

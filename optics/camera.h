@@ -4,7 +4,7 @@
 
 #include "scenes/snapshot.h"
 
-namespace cairn::renderer {
+namespace cairn::optics {
 
 /// A pinhole camera. Pixel (0, 0) is at the top left.
 struct Camera {
@@ -21,4 +21,4 @@ struct Camera {
 /// Where a camera that moved from `before` to `now` will be after as much time again, if it goes on alike.
 [[nodiscard]] Camera extrapolated(const Camera& before, const Camera& now);
 
-}  // namespace cairn::renderer
+}  // namespace cairn::optics
