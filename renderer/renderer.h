@@ -19,6 +19,8 @@
 
 namespace cairn::renderer {
 
+class FrameLoop;
+
 /// Renders a scene, or a volume, through its voxel cache. Only what rays prove visible is voxelized, no finer
 /// than a pixel shows. Bricks stay in the pools from one frame to the next. Needs the context that was
 /// current at its construction.
@@ -96,11 +98,7 @@ public:
     [[nodiscard]] const FrameStatistics& statistics() const;
 
 private:
-    struct Parts;
-    /// Marches rows of a picture band by band; `march_band(row)` brings one to its end.
-    /// @param shown  SHOW_* of shaders/interop/config.h.
-    optics::Image march(const View& view, Rows rows, int shown, const std::function<void(int)>& march_band);
-    std::unique_ptr<Parts> parts_;
+    std::unique_ptr<FrameLoop> loop_;
 };
 
 }  // namespace cairn::renderer
