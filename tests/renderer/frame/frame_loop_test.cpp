@@ -1,6 +1,7 @@
 // The frame loop itself: its three goals on one content, and what its statistics are of.
 #include "renderer/frame/frame_loop.h"
 
+#include <chrono>
 #include <memory>
 #include <vector>
 

@@ -1,8 +1,9 @@
 // The tile cache alone: it answers queries that no ray has asked.
 #include "renderer/produce/tile_cache.h"
 
-#include <algorithm>
+#include <chrono>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -148,7 +149,12 @@ TEST_F(TileCacheTest, BricksComeFirstAndThenTheDeepestNodes) {
         const std::vector<std::uint32_t> one = children_of(level1[0]);
         const std::vector<std::uint32_t> inner = children_of(one[0]);
         const std::vector<std::uint32_t> other = children_of(level1[1]);
-        // Only the block of `inner` can go, when rays are in `other`.
+        // What leads to a brick stays. Of the rest, only the block of `inner` can go when rays are in
+        // `other`.
+        const Round kept = round();
+        EXPECT_EQ(cache.answer(for_bricks({one[1]})).bricks, 1U);
+        next_round();
+        cache.keep_since(kept);
         std::vector<TileQuery> queries = {{level1[2], QueryKind::children}, {other[0], QueryKind::children}};
         if (asks_for_brick) queries.push_back({inner[0], QueryKind::brick});
         const TileCache::Answer answer = cache.answer(queries);
@@ -187,17 +193,15 @@ TEST_F(TileCacheTest, KeepsWhatWasUsedSinceARoundUntilToldOtherwise) {
     const std::vector<std::uint32_t> level1 = children_of(0);
     const Round first_used = round();
     EXPECT_EQ(cache.answer(for_bricks({level1[0], level1[1]})).bricks, 2U);
-    next_round();
-    next_round();
-    cache.keep_since(first_used);
-    EXPECT_EQ(cache.answer(for_bricks({level1[2]})).bricks, 0U);
-    cache.keep_since(first_used.next());
-    EXPECT_EQ(cache.answer(for_bricks({level1[2]})).bricks, 1U);
-    next_round();
-    cache.keep_since(first_used);
-    EXPECT_EQ(cache.answer(for_bricks({level1[3]})).bricks, 0U);
-    cache.keep_since(std::nullopt);
-    EXPECT_EQ(cache.answer(for_bricks({level1[3]})).bricks, 1U);
+    const auto answered = [&](std::optional<Round> kept, std::uint32_t entry) {
+        cache.keep_since(kept);
+        next_round();
+        return cache.answer(for_bricks({entry})).bricks;
+    };
+    EXPECT_EQ(answered(first_used, level1[2]), 0U);
+    EXPECT_EQ(answered(first_used.next(), level1[2]), 1U);
+    EXPECT_EQ(answered(first_used, level1[3]), 0U);
+    EXPECT_EQ(answered(std::nullopt, level1[3]), 1U);
 }
 
 TEST_F(TileCacheTest, WhenTimeIsUpOnlyTheFirstBatchIsAnswered) {
@@ -226,6 +230,7 @@ TEST_F(TileCacheTest, AheadNothingThatIsKeptLosesItsPlace) {
     TileCache& cache = make({.brick_pool_bytes = bytes_of_slots(3)});
     const std::vector<std::uint32_t> level1 = children_of(0);
     EXPECT_EQ(cache.answer(for_bricks({level1[0]})).bricks, 1U);
+    next_round();
     next_round();
     const Round frame = round();
     EXPECT_EQ(cache.answer(for_bricks({level1[1]})).bricks, 1U);
