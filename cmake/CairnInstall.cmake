@@ -10,7 +10,7 @@ install(TARGETS ${cairn_libraries} EXPORT cairnTargets ARCHIVE DESTINATION ${CMA
 install(EXPORT cairnTargets NAMESPACE cairn:: DESTINATION ${cairn_config_dir})
 
 # Headers lie as they are included: "voxelizer/grid.h" in include/cairn/voxelizer/grid.h.
-install(DIRECTORY base gl scenes voxelizer renderer reference
+install(DIRECTORY base gl optics scenes voxelizer renderer reference
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cairn
         FILES_MATCHING PATTERN "*.h" PATTERN "scenes/gltf" EXCLUDE)
 install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cairn/shaders FILES_MATCHING PATTERN "*.h")

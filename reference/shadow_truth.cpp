@@ -39,7 +39,7 @@ Faces faces_of(const scenes::Snapshot& snapshot) {
 /// Row after row, through the pixels' centres.
 class PixelRays {
 public:
-    PixelRays(const renderer::Camera& camera, int width, int height)
+    PixelRays(const optics::Camera& camera, int width, int height)
         : size_(width, height), forward_(glm::normalize(camera.target - camera.eye)) {
         const double half = std::tan(0.5 * camera.yfov);
         const glm::dvec3 right = glm::normalize(glm::cross(forward_, camera.up));
@@ -77,7 +77,7 @@ ShadowReceivers shadow_receivers(const ImageTracer& tracer, const ShadowQuestion
         const glm::dvec3 point = question.camera.eye + direction * double(found.seen.depth[i]);
         glm::dvec3 normal = faces.normals[face];
         if (glm::dot(normal, direction) > 0.0) normal = -normal;
-        if (!(glm::dot(normal, renderer::direction_to(question.light, point)) > 0.0)) continue;
+        if (!(glm::dot(normal, optics::direction_to(question.light, point)) > 0.0)) continue;
         found.pixels.push_back(i);
         found.points.push_back(point);
         found.normals.push_back(normal);

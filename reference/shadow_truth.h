@@ -8,10 +8,10 @@
 
 #include <glm/glm.hpp>
 
+#include "optics/camera.h"
+#include "optics/light.h"
 #include "reference/area_light.h"
 #include "reference/image.h"
-#include "renderer/camera.h"
-#include "renderer/light.h"
 #include "scenes/node_selection.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
@@ -23,8 +23,8 @@ struct ShadowQuestion {
     const scenes::Scene& scene;
     const scenes::Snapshot& snapshot;
     const scenes::NodeSelection& receivers;  ///< nodes whose pixels count
-    const renderer::Camera& camera;
-    const renderer::Light& light;
+    const optics::Camera& camera;
+    const optics::Light& light;
     int width = 512;  ///< pixels
     int height = 512;
 };

@@ -9,15 +9,15 @@ constexpr double far_away = 1e5;
 
 }  // namespace
 
-ReferenceCamera camera_of(const renderer::Camera& camera) {
+ReferenceCamera camera_of(const optics::Camera& camera) {
     return {camera.eye, camera.target, camera.up, camera.yfov};
 }
 
-ReferenceLight light_of(const renderer::Light& light) {
+ReferenceLight light_of(const optics::Light& light) {
     return {light.positional, light.position, light.towards};
 }
 
-AreaLight area_light_of(const renderer::Light& light, const scenes::Bounds& scene) {
+AreaLight area_light_of(const optics::Light& light, const scenes::Bounds& scene) {
     AreaLight area;
     area.shape = AreaLight::Shape::sphere;
     if (!light.positional) {
@@ -28,9 +28,9 @@ AreaLight area_light_of(const renderer::Light& light, const scenes::Bounds& scen
     }
     area.centre = light.position;
     area.radius = light.radius;
-    if (light.shape != renderer::LightShape::sphere) {
+    if (light.shape != optics::LightShape::sphere) {
         area.shape =
-            light.shape == renderer::LightShape::disk ? AreaLight::Shape::disk : AreaLight::Shape::rectangle;
+            light.shape == optics::LightShape::disk ? AreaLight::Shape::disk : AreaLight::Shape::rectangle;
         area.half_u = light.half_u;
         area.half_v = light.half_v;
     }

@@ -4,7 +4,7 @@
 
 namespace cairn::renderer {
 
-Image KeptPicture::rows(const View& view, Rows rows) const {
+optics::Image KeptPicture::rows(const View& view, Rows rows) const {
     if (finished_.empty() || !(view == view_)) return {};
     const auto first = finished_.begin() + rows.first;
     if (!std::all_of(first, first + rows.count, [](bool finished) { return finished; })) return {};
@@ -13,7 +13,7 @@ Image KeptPicture::rows(const View& view, Rows rows) const {
     return {view.width, rows.count, {from, from + rows.count * row_bytes}};
 }
 
-void KeptPicture::keep(const View& view, Rows rows, const Image& image) {
+void KeptPicture::keep(const View& view, Rows rows, const optics::Image& image) {
     const std::size_t bytes = std::size_t(view.width) * std::size_t(view.height) * 4;
     if (bytes > limit_bytes) return forget();
     if (finished_.empty() || !(view == view_)) {

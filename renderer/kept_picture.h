@@ -11,10 +11,10 @@ namespace cairn::renderer {
 class KeptPicture {
 public:
     /// Those rows, when all of them were kept for just this view; else an empty image.
-    [[nodiscard]] Image rows(const View& view, Rows rows) const;
+    [[nodiscard]] optics::Image rows(const View& view, Rows rows) const;
 
     /// Keeps finished rows; those of another view are forgotten. Pictures past the limit are not kept.
-    void keep(const View& view, Rows rows, const Image& image);
+    void keep(const View& view, Rows rows, const optics::Image& image);
 
     void forget();
 
@@ -22,7 +22,7 @@ public:
 
 private:
     View view_;
-    Image image_;
+    optics::Image image_;
     std::vector<bool> finished_;  // a row each
 };
 

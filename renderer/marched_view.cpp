@@ -18,13 +18,13 @@ Place place_of(const View& view, const glm::dvec3& point, const voxelizer::Grid&
 
 bool is_soft(const View& view) {
     return view.shadow == Shadow::hard && (view.shadow_rays > 1 || view.shadow_cones) &&
-           has_extent(view.light);
+           optics::has_extent(view.light);
 }
 
 namespace {
 
 void check_camera(const View& view) {
-    const Camera& camera = view.camera;
+    const optics::Camera& camera = view.camera;
     auto fail = [](const std::string& what, const std::string& way_out) {
         throw Error(Fault::usage, "view", what, way_out);
     };
@@ -92,16 +92,17 @@ View in_world(const View& view, const voxelizer::Grid& grid, const TreeShape& sh
     return out;
 }
 
-static_assert(int(LightShape::sphere) == LIGHT_CONE && int(LightShape::rectangle) == LIGHT_RECTANGLE &&
-              int(LightShape::disk) == LIGHT_DISK);
+static_assert(int(optics::LightShape::sphere) == LIGHT_CONE &&
+              int(optics::LightShape::rectangle) == LIGHT_RECTANGLE &&
+              int(optics::LightShape::disk) == LIGHT_DISK);
 
 /// @param voxel_size  of the voxels that the view is told in, in units of its light.
 void set_area_light(interop::MarchView& out, const View& view, double voxel_size) {
-    const Light& light = view.light;
+    const optics::Light& light = view.light;
     const double lost = 2.0 * std::pow(std::sin(0.5 * light.angle), 2.0);
     out.light_u = glm::vec4(glm::vec3(light.half_u / voxel_size), float(light.radius / voxel_size));
     out.light_v = glm::vec4(glm::vec3(light.half_v / voxel_size), float(lost));
-    const LightShape shape = light.positional ? light.shape : LightShape::sphere;
+    const optics::LightShape shape = light.positional ? light.shape : optics::LightShape::sphere;
     const bool soft = is_soft(view);
     out.area_light =
         glm::ivec4(soft ? view.shadow_rays : 1, int(shape), soft ? 1 : 0, soft && view.shadow_cones ? 1 : 0);
@@ -188,8 +189,8 @@ std::uint32_t background_pixel(const glm::vec3& linear) {
     return pixel;
 }
 
-Image background_image(const View& view, Rows rows) {
-    Image image{view.width, rows.count, {}};
+optics::Image background_image(const View& view, Rows rows) {
+    optics::Image image{view.width, rows.count, {}};
     const std::uint32_t pixel = background_pixel(view.background);
     image.rgba.resize(std::size_t(view.width) * std::size_t(rows.count) * 4);
     for (std::size_t i = 0; i < image.rgba.size(); ++i)

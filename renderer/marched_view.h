@@ -21,7 +21,7 @@ void check(const View& view, const TreeShape& shape);
 
 /// A pixel that shows nothing else, as write_pixel() in shade.glsl would encode it.
 [[nodiscard]] std::uint32_t background_pixel(const glm::vec3& linear);
-[[nodiscard]] Image background_image(const View& view, Rows rows);
+[[nodiscard]] optics::Image background_image(const View& view, Rows rows);
 
 /// Where a point of the view is in the tree. Unanchored ones are told from the root cube.
 [[nodiscard]] Place place_of(const View& view, const glm::dvec3& point, const voxelizer::Grid& grid);

@@ -124,16 +124,16 @@ void PyramidShadowRenderer::move_to(double seconds) {
     parts.move_ms += milliseconds_since(start);
 }
 
-Image PyramidShadowRenderer::render(const View& view) {
+optics::Image PyramidShadowRenderer::render(const View& view) {
     const std::vector<std::uint32_t> pixels = parts_->light(view, SHOW_SURFACE);
-    Image image{view.width, view.height, std::vector<std::uint8_t>(4 * pixels.size())};
+    optics::Image image{view.width, view.height, std::vector<std::uint8_t>(4 * pixels.size())};
     std::memcpy(image.rgba.data(), pixels.data(), image.rgba.size());
     return image;
 }
 
-LightShares PyramidShadowRenderer::light_shares(const View& view) {
+optics::LightShares PyramidShadowRenderer::light_shares(const View& view) {
     const std::vector<std::uint32_t> pixels = parts_->light(view, SHOW_LIGHT);
-    LightShares out{view.width, view.height, std::vector<float>(pixels.size())};
+    optics::LightShares out{view.width, view.height, std::vector<float>(pixels.size())};
     std::memcpy(out.shares.data(), pixels.data(), pixels.size() * sizeof(float));
     return out;
 }

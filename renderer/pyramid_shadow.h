@@ -59,9 +59,9 @@ public:
     /// The picture depends on the view and the moment alone. `pixel_error`, `level_of_detail` and
     /// `shadow_cones` do not count: voxels have one size.
     /// @throws Error  Fault::usage for a view that is none.
-    [[nodiscard]] Image render(const View& view);
+    [[nodiscard]] optics::Image render(const View& view);
     /// Of the same rays what arrives of the light.
-    [[nodiscard]] LightShares light_shares(const View& view);
+    [[nodiscard]] optics::LightShares light_shares(const View& view);
 
     [[nodiscard]] const PyramidShadowStatistics& statistics() const;
 

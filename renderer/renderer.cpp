@@ -81,7 +81,8 @@ void Renderer::set_mix(const Mix& mix) {
     parts_->picture.forget();
 }
 
-Image Renderer::march(const View& view, Rows rows, int shown, const std::function<void(int)>& march_band) {
+optics::Image Renderer::march(const View& view, Rows rows, int shown,
+                              const std::function<void(int)>& march_band) {
     check(view, parts_->shape);
     if (rows.first < 0 || rows.count < 1 || rows.count > view.height - rows.first) {
         throw Error(
@@ -102,7 +103,7 @@ Image Renderer::march(const View& view, Rows rows, int shown, const std::functio
     interop::MarchView marched = parts.march_view_of(view);
     const int band_rows = Marcher::band_rows(view.width, view.height);
     const bool shows_light = shown == SHOW_LIGHT;
-    Image image;
+    optics::Image image;
     if (!shows_light) {
         image = parts.is_empty() && parts.mix.meshes == nullptr ? background_image(view, rows)
                                                                 : parts.picture.rows(view, rows);
@@ -131,37 +132,37 @@ Image Renderer::march(const View& view, Rows rows, int shown, const std::functio
     return image;
 }
 
-Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
+optics::Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
     parts_->keep_nothing();
     return march(view, {0, view.height}, int(view.show), [&](int row) {
         parts_->converge(progress, double(view.width) * view.height, double(view.width) * row);
     });
 }
 
-LightShares Renderer::light_shares(const View& view, const std::function<void(double)>& progress) {
+optics::LightShares Renderer::light_shares(const View& view, const std::function<void(double)>& progress) {
     if (!parts_->marcher.marches_surfaces()) {
         throw Error(Fault::usage, "view", "the light at a volume is not that of one place",
                     "render its picture");
     }
     parts_->keep_nothing();
-    const Image bits = march(view, {0, view.height}, SHOW_LIGHT, [&](int row) {
+    const optics::Image bits = march(view, {0, view.height}, SHOW_LIGHT, [&](int row) {
         parts_->converge(progress, double(view.width) * view.height, double(view.width) * row);
     });
-    LightShares out{view.width, view.height, std::vector<float>(bits.rgba.size() / sizeof(float))};
+    optics::LightShares out{view.width, view.height, std::vector<float>(bits.rgba.size() / sizeof(float))};
     std::memcpy(out.shares.data(), bits.rgba.data(), bits.rgba.size());
     return out;
 }
 
-Image Renderer::render_rows(const View& view, Rows rows) {
+optics::Image Renderer::render_rows(const View& view, Rows rows) {
     parts_->keep_nothing();
     return march(view, rows, int(view.show), [&](int) { parts_->converge({}, 0.0, 0.0); });
 }
 
-Image Renderer::render_within(const View& view, double budget_ms) {
+optics::Image Renderer::render_within(const View& view, double budget_ms) {
     return render_rows_within(view, {0, view.height}, budget_ms);
 }
 
-Image Renderer::render_rows_within(const View& view, Rows rows, double budget_ms) {
+optics::Image Renderer::render_rows_within(const View& view, Rows rows, double budget_ms) {
     parts_->require_lists();
     const auto deadline = deadline_in(budget_ms);
     parts_->keep_what_was_used_for(view, rows);

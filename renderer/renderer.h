@@ -10,8 +10,9 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
-#include "renderer/camera.h"
-#include "renderer/light.h"
+#include "optics/camera.h"
+#include "optics/image.h"
+#include "optics/light.h"
 #include "renderer/march/tile_queries.h"
 #include "renderer/march/transfer_function.h"
 #include "renderer/march/traversal.h"
@@ -49,8 +50,8 @@ enum class LevelOfDetail : std::uint8_t {
 struct View {
     int width = 512;  ///< pixels, [1, 16384]
     int height = 512;
-    Camera camera;
-    Light light;
+    optics::Camera camera;
+    optics::Light light;
     Shadow shadow = Shadow::hard;
     glm::vec3 background{0.80F, 0.84F, 0.90F};  ///< linear
     /// Size of a voxel on the screen, in pixels, that level_of_detail follows.
@@ -117,14 +118,6 @@ struct TreeOptions {
 /// @throws Error (Fault::usage) for a shape that cannot work.
 [[nodiscard]] TreeShape tree_shape_of(const TreeOptions& options);
 
-/// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended
-/// in).
-struct Image {
-    int width = 0;
-    int height = 0;
-    std::vector<std::uint8_t> rgba;
-};
-
 /// Counters of one `render()`.
 struct FrameStatistics {
     double milliseconds = 0.0;
@@ -163,14 +156,6 @@ struct FrameStatistics {
 struct Prefetched {
     std::uint64_t bricks = 0;  ///< produced
     bool more = false;         ///< there may be more to produce; not once the pools are full
-};
-
-/// What of the light each pixel of a picture gets.
-struct LightShares {
-    int width = 0;
-    int height = 0;
-    std::vector<float>
-        shares;  ///< [0, 1], row 0 at the top; 0 where the surface turns its back; -1: nothing there
 };
 
 class MeshRaster;
@@ -230,12 +215,12 @@ public:
     void set_mix(const Mix& mix);
 
     /// @param progress  called after each pass with the share of pixels that are done, in [0, 1].
-    [[nodiscard]] Image render(const View& view, const std::function<void(double)>& progress = {});
+    [[nodiscard]] optics::Image render(const View& view, const std::function<void(double)>& progress = {});
 
     /// Of the same rays what arrives of the light, instead of colours.
     /// @throws Error (Fault::usage) for volumes, whose light is not that of one place.
-    [[nodiscard]] LightShares light_shares(const View& view,
-                                           const std::function<void(double)>& progress = {});
+    [[nodiscard]] optics::LightShares light_shares(const View& view,
+                                                   const std::function<void(double)>& progress = {});
 
     /// Renders what is there, and produces no longer than until `budget_ms` have passed since the call: first
     /// what most rays ask for. What is missing then is shown by the nearest ancestor that has a brick, or not
@@ -244,13 +229,13 @@ public:
     /// Called again for the same view, it goes on where it stopped, until the picture is that of render():
     /// statistics().converged. What it used for this view since the first of these calls it does not give up,
     /// so pools too small for the view leave some of it at a lower level of detail and come to rest.
-    [[nodiscard]] Image render_within(const View& view, double budget_ms);
+    [[nodiscard]] optics::Image render_within(const View& view, double budget_ms);
 
     /// The same for some rows of the picture, which are those of the whole one, bit for bit: for a caller
     /// that has other things to do between them. The image is as high as there are rows.
     /// @throws Error (Fault::usage) when the picture does not have such rows.
-    [[nodiscard]] Image render_rows(const View& view, Rows rows);
-    [[nodiscard]] Image render_rows_within(const View& view, Rows rows, double budget_ms);
+    [[nodiscard]] optics::Image render_rows(const View& view, Rows rows);
+    [[nodiscard]] optics::Image render_rows_within(const View& view, Rows rows, double budget_ms);
 
     /// Produces bricks for a view that may be asked for next, where it finds room that the last frame does
     /// not need, until `budget_ms` have passed. Changes no picture.
@@ -273,7 +258,7 @@ private:
     struct Parts;
     /// Marches rows of a picture band by band; `march_band(row)` brings one to its end.
     /// @param shown  SHOW_* of shaders/interop/config.h.
-    Image march(const View& view, Rows rows, int shown, const std::function<void(int)>& march_band);
+    optics::Image march(const View& view, Rows rows, int shown, const std::function<void(int)>& march_band);
     std::unique_ptr<Parts> parts_;
 };
 

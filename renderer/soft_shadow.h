@@ -6,7 +6,7 @@
 
 #include "gl/shader_source.h"
 #include "renderer/renderer.h"
-#include "renderer/shadow/rectangle_light.h"
+#include "renderer/shadow/shadow_frustum.h"
 #include "renderer/shadow/soft_shadow_map.h"
 #include "scenes/node_selection.h"
 #include "scenes/scene.h"
@@ -17,7 +17,7 @@ namespace cairn::renderer {
 struct SoftShadowView {
     int width = 512;  ///< pixels, [1, 16384]
     int height = 512;
-    Camera camera;
+    optics::Camera camera;
     RectangleLight light;
     std::optional<ShadowFrustum> frustum;  ///< none: fit_shadow_frustum
     glm::vec3 light_color{1.0F};           ///< linear
@@ -27,7 +27,7 @@ struct SoftShadowView {
 
 /// A picture, and what its shadow was made of, pixel by pixel.
 struct SoftShadowPicture {
-    Image image;
+    optics::Image image;
     std::vector<float> visible;   ///< share of the light that a receiver sees; -1: not on a receiver
     std::vector<float> distance;  ///< from the eye; infinite = nothing there
 };

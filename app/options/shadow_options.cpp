@@ -6,7 +6,7 @@
 
 #include "app/options/parse.h"
 #include "base/error.h"
-#include "renderer/shadow/rectangle_light.h"
+#include "renderer/shadow/shadow_frustum.h"
 #include "shaders/interop/config.h"
 
 namespace cairn::app {
@@ -35,9 +35,9 @@ double positive(const char* option, double value) {
     throw Error(Fault::usage, option, fmt::format("{} is not positive", value));
 }
 
-renderer::Light direction_of(const std::string& text) {
+optics::Light direction_of(const std::string& text) {
     const std::vector<double> n = parse_numbers("--light-direction", text, 3, 4);
-    renderer::Light light{.towards = {n[0], n[1], n[2]}};
+    optics::Light light{.towards = {n[0], n[1], n[2]}};
     if (!(glm::length(light.towards) > 0.0))
         throw Error(Fault::usage, "--light-direction", "it is no direction");
     const double degrees = n.size() == 4 ? n[3] : 0.0;
@@ -140,15 +140,15 @@ void check(const ShadowOptions& options) {
         refuse("--difference", "nothing is compared", "add --compare embree");
 }
 
-renderer::Light light_of(const ShadowOptions& options, const renderer::Light& given,
-                         const scenes::Bounds& bounds) {
+optics::Light light_of(const ShadowOptions& options, const optics::Light& given,
+                       const scenes::Bounds& bounds) {
     if (options.direction) return *options.direction;
-    renderer::Light light = given;
+    optics::Light light = given;
     if (!options.rectangle && !options.disk) return light;
     const glm::dvec3 target = options.target.value_or(0.5 * (bounds.low + bounds.high));
     const glm::dvec2 size = options.rectangle.value_or(glm::dvec2(2.0 * options.disk.value_or(1.0)));
     const renderer::RectangleLight aimed = renderer::aimed_light(light.position, target, size.x, size.y);
-    light.shape = options.disk ? renderer::LightShape::disk : renderer::LightShape::rectangle;
+    light.shape = options.disk ? optics::LightShape::disk : optics::LightShape::rectangle;
     light.half_u = aimed.half_u;
     light.half_v = aimed.half_v;
     return light;
@@ -231,7 +231,7 @@ ShadowTask make_shadow_task(const ShadowOptions& options) {
     task.shown = scenes::part_of(task.input.snapshot, both);
     task.view = view_of(options.view, task.input.snapshot);
     task.view.light = light_of(options, task.view.light, task.shown.bounds);
-    const bool extended = renderer::has_extent(task.view.light);
+    const bool extended = optics::has_extent(task.view.light);
     task.view.shadow_rays = options.rays.value_or(extended ? default_soft_rays : 1);
     task.view.shadow_cones = options.cones;
     task.is_soft = extended && (task.view.shadow_rays > 1 || options.cones);

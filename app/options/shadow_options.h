@@ -26,11 +26,11 @@ struct ShadowOptions {
     std::optional<std::filesystem::path> output;
     std::optional<std::filesystem::path> difference;
     std::optional<int> rays;
-    bool cones = false;                        ///< in place of rays
-    std::optional<renderer::Light> direction;  ///< from --light-direction
-    std::optional<glm::dvec2> rectangle;       ///< width and height
-    std::optional<double> disk;                ///< radius
-    std::optional<glm::dvec3> target;          ///< what a rectangle or a disk shines on
+    bool cones = false;                      ///< in place of rays
+    std::optional<optics::Light> direction;  ///< from --light-direction
+    std::optional<glm::dvec2> rectangle;     ///< width and height
+    std::optional<double> disk;              ///< radius
+    std::optional<glm::dvec3> target;        ///< what a rectangle or a disk shines on
     std::vector<std::string> occluders, receivers;
     renderer::SoftShadowOptions map;
     bool map_given = false;                       ///< any of its options

@@ -22,9 +22,9 @@ constexpr int max_brick_pool_mib = 1 << 20;
 constexpr double least_pixel_error = 1e-3;
 constexpr double largest_pixel_error = 1e3;
 
-renderer::Camera camera_of(const std::string& text) {
+optics::Camera camera_of(const std::string& text) {
     const std::vector<double> n = parse_numbers("--camera", text, 6, 7);
-    renderer::Camera camera{.eye = {n[0], n[1], n[2]}, .target = {n[3], n[4], n[5]}};
+    optics::Camera camera{.eye = {n[0], n[1], n[2]}, .target = {n[3], n[4], n[5]}};
     const glm::dvec3 forward = camera.target - camera.eye;
     if (!(glm::dot(forward, forward) > 0.0)) {
         throw Error(Fault::usage, "--camera", "the eye and the target are the same point");
@@ -44,7 +44,7 @@ renderer::Camera camera_of(const std::string& text) {
     return camera;
 }
 
-renderer::Light light_of(const std::string& text) {
+optics::Light light_of(const std::string& text) {
     const std::vector<double> n = parse_numbers("--light", text, 3, 4);
     const double radius = n.size() == 4 ? n[3] : 0.0;
     if (radius < 0.0) throw Error(Fault::usage, "--light", fmt::format("a radius of {} is negative", radius));
@@ -89,12 +89,12 @@ double pixel_error_of(const std::string& text) {
 
 /// The first light that the renderer can do. Only its colour is taken: glTF's intensities are in candela and
 /// lux, which say nothing of how bright a picture should be.
-std::optional<renderer::Light> first_light(const scenes::Snapshot& snapshot) {
+std::optional<optics::Light> first_light(const scenes::Snapshot& snapshot) {
     for (const scenes::PlacedLight& placed : snapshot.lights) {
         const glm::vec3& color = placed.light.color;
         const float strongest = std::max({color.r, color.g, color.b});
         if (placed.light.type == scenes::Light::Type::spot || !(strongest > 0.0F)) continue;
-        renderer::Light light;
+        optics::Light light;
         light.color = color / strongest;
         light.positional = placed.light.type == scenes::Light::Type::point;
         light.position = glm::dvec3(placed.world_from_light[3]);
@@ -220,19 +220,19 @@ renderer::View view_of(const ViewOptions& options, const scenes::Snapshot& snaps
     renderer::View view = options.view;
     if (!options.camera_given) {
         const double aspect = double(view.width) / double(view.height);
-        view.camera = renderer::framing_camera(snapshot.bounds, aspect);
+        view.camera = optics::framing_camera(snapshot.bounds, aspect);
     }
     if (!options.light) view.light = first_light(snapshot).value_or(view.light);
     return view;
 }
 
-std::string camera_text(const renderer::Camera& camera) {
+std::string camera_text(const optics::Camera& camera) {
     const auto& [eye, target, up, yfov] = camera;
     return fmt::format("{},{},{},{},{},{},{}", eye.x, eye.y, eye.z, target.x, target.y, target.z,
                        degrees_of(yfov));
 }
 
-renderer::Camera snapped(const renderer::Camera& camera) {
+optics::Camera snapped(const optics::Camera& camera) {
     return camera_of(camera_text(camera));
 }
 

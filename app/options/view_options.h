@@ -38,10 +38,10 @@ void add_tree_options(CLI::App& verb, ViewOptions& options);    ///< of those: v
 
 /// What `--camera` is to be given for this camera: for a snapped one it means the same, bit for bit. Its up
 /// direction must be the one that `--camera` chooses.
-[[nodiscard]] std::string camera_text(const renderer::Camera& camera);
+[[nodiscard]] std::string camera_text(const optics::Camera& camera);
 
 /// The nearest camera that `--camera` can tell.
-[[nodiscard]] renderer::Camera snapped(const renderer::Camera& camera);
+[[nodiscard]] optics::Camera snapped(const optics::Camera& camera);
 
 /// A line for the shell that makes this picture again: the scene, the moment and the tree of the options, and
 /// the view, whose camera is a snapped one.

@@ -12,7 +12,7 @@
 
 namespace cairn::app {
 
-void write_png(const renderer::Image& image, const std::filesystem::path& path) {
+void write_png(const optics::Image& image, const std::filesystem::path& path) {
     constexpr int channels = 3;
     const std::size_t pixel_count = std::size_t(image.width) * std::size_t(image.height);
     std::vector<std::uint8_t> rgb(pixel_count * channels);

@@ -18,11 +18,11 @@ namespace {
 constexpr float embree_albedo = 0.8F;
 
 /// Grey, shaded as the renderer shades: by the light's middle.
-renderer::Image lit_image(const ShadowTask& task, const reference::ShadowReceivers& receivers,
-                          const std::vector<float>& shares) {
+optics::Image lit_image(const ShadowTask& task, const reference::ShadowReceivers& receivers,
+                        const std::vector<float>& shares) {
     const reference::ReferenceImage& seen = receivers.seen;
     const renderer::View& view = task.view;
-    renderer::Image image{view.width, view.height, std::vector<std::uint8_t>(4 * seen.depth.size(), 255)};
+    optics::Image image{view.width, view.height, std::vector<std::uint8_t>(4 * seen.depth.size(), 255)};
     const auto encoded = [](float linear) {
         const float c = std::clamp(linear, 0.0F, 1.0F);
         const float srgb = c <= 0.0031308F ? 12.92F * c : 1.055F * std::pow(c, 1.0F / 2.4F) - 0.055F;
@@ -36,7 +36,7 @@ renderer::Image lit_image(const ShadowTask& task, const reference::ShadowReceive
     }
     for (std::size_t k = 0; k < receivers.pixels.size(); ++k) {
         const double facing =
-            glm::dot(receivers.normals[k], renderer::direction_to(view.light, receivers.points[k]));
+            glm::dot(receivers.normals[k], optics::direction_to(view.light, receivers.points[k]));
         const float direct = float(facing) * shares[receivers.pixels[k]] * (1.0F - view.light.ambient);
         for (std::size_t c = 0; c < 3; ++c)
             image.rgba[4 * receivers.pixels[k] + c] = encoded(embree_albedo * (view.light.ambient + direct));
@@ -79,7 +79,7 @@ ShadowResult shadow_by_pyramid(const ShadowTask& task, const ShadowOptions& opti
 ShadowResult shadow_by_map(const ShadowTask& task, const ShadowOptions& options) {
     renderer::SoftShadowRenderer renderer(task.input.scene, task.input.snapshot, task.occluders,
                                           task.receivers, options.map, options.common.driver.shaders);
-    const renderer::Light& light = task.view.light;
+    const optics::Light& light = task.view.light;
     renderer::SoftShadowView view;
     view.width = task.view.width;
     view.height = task.view.height;
@@ -122,9 +122,9 @@ ShadowResult shadow_by_embree(const ShadowTask& task, const ShadowOptions& optio
     return result;
 }
 
-renderer::Image difference_image(const ShadowResult& shadow, const std::vector<float>& truth) {
-    renderer::Image image{shadow.image.width, shadow.image.height,
-                          std::vector<std::uint8_t>(4 * truth.size(), 255)};
+optics::Image difference_image(const ShadowResult& shadow, const std::vector<float>& truth) {
+    optics::Image image{shadow.image.width, shadow.image.height,
+                        std::vector<std::uint8_t>(4 * truth.size(), 255)};
     for (std::size_t i = 0; i < truth.size(); ++i) {
         if (truth[i] < 0.0F || shadow.shares[i] < 0.0F) continue;
         const float difference = std::clamp(shadow.shares[i] - truth[i], -1.0F, 1.0F);

@@ -12,7 +12,7 @@ namespace cairn::app {
 
 /// A shadow, pixel by pixel, row 0 at the top.
 struct ShadowResult {
-    renderer::Image image;
+    optics::Image image;
     std::vector<float> shares;    ///< of the light that arrives, [0, 1]; -1: nothing to receive it
     double milliseconds = 0.0;    ///< of the shadow, when all that can be kept is there
     double first_frame_ms = 0.0;  ///< of a picture and all that it needs
@@ -34,6 +34,6 @@ struct ShadowResult {
                                             const std::optional<std::filesystem::path>& cache = std::nullopt);
 
 /// White where they agree or nothing is compared, red where it is too dark, blue where it is too light.
-[[nodiscard]] renderer::Image difference_image(const ShadowResult& shadow, const std::vector<float>& truth);
+[[nodiscard]] optics::Image difference_image(const ShadowResult& shadow, const std::vector<float>& truth);
 
 }  // namespace cairn::app

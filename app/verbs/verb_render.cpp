@@ -111,7 +111,7 @@ ExitCode run(const Options& options) {
     subject.reset();  // the renderer has its own copy of what it needs: do not pay twice
     report.add("setup_ms", watch.lap_ms());
 
-    renderer::Image image;
+    optics::Image image;
     {
         Progress progress("rendering", quiet);
         image = renderer.render(view, [&progress](double share) { progress.set(share); });

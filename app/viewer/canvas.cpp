@@ -4,7 +4,7 @@
 
 namespace cairn::app {
 
-void Canvas::Sheet::hold(const renderer::Image& image, std::uint64_t new_revision) {
+void Canvas::Sheet::hold(const optics::Image& image, std::uint64_t new_revision) {
     if (revision == new_revision) return;
     revision = new_revision;
     if (size != glm::ivec2(image.width, image.height)) {
@@ -29,7 +29,7 @@ void Canvas::Sheet::draw(const renderer::Rows& rows, const glm::ivec2& window) c
                            y_of(end), GL_COLOR_BUFFER_BIT, size == window ? GL_NEAREST : GL_LINEAR);
 }
 
-void Canvas::draw(const renderer::Image& image, std::uint64_t revision, const glm::ivec2& window) {
+void Canvas::draw(const optics::Image& image, std::uint64_t revision, const glm::ivec2& window) {
     if (image.rgba.empty()) return;
     base_.hold(image, revision);
     base_.draw({0, image.height}, window);

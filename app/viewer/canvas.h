@@ -14,7 +14,7 @@ namespace cairn::app {
 /// as long as GL_FRAMEBUFFER_SRGB is off, as it is by default: bytes are copied as they are.
 class Canvas {
 public:
-    void draw(const renderer::Image& image, std::uint64_t revision, const glm::ivec2& window);
+    void draw(const optics::Image& image, std::uint64_t revision, const glm::ivec2& window);
     /// Only the rows that have been rendered.
     void draw(const Refinement& growing, std::uint64_t revision, const glm::ivec2& window);
 
@@ -24,7 +24,7 @@ private:
         gl::FramebufferHandle framebuffer;
         glm::ivec2 size{0};
         std::uint64_t revision = 0;  // of what it holds; 0: nothing
-        void hold(const renderer::Image& image, std::uint64_t new_revision);
+        void hold(const optics::Image& image, std::uint64_t new_revision);
         void draw(const renderer::Rows& rows, const glm::ivec2& window) const;
     };
     Sheet base_;

@@ -17,7 +17,7 @@ constexpr double largest_speed = 10.0;
 
 }  // namespace
 
-FlyCamera::FlyCamera(const renderer::Camera& camera, double scene_size)
+FlyCamera::FlyCamera(const optics::Camera& camera, double scene_size)
     : camera_(camera), scene_size_(scene_size), speed_(first_speed * scene_size) {}
 
 void FlyCamera::look(const glm::dvec2& turned) {

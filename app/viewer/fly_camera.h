@@ -12,9 +12,9 @@ class FlyCamera {
 public:
     /// @param scene_size  the diagonal of the scene, world units, > 0: it starts with a quarter of it a
     /// second.
-    FlyCamera(const renderer::Camera& camera, double scene_size);
+    FlyCamera(const optics::Camera& camera, double scene_size);
 
-    [[nodiscard]] const renderer::Camera& camera() const { return camera_; }
+    [[nodiscard]] const optics::Camera& camera() const { return camera_; }
     [[nodiscard]] double speed() const { return speed_; }  ///< world units a second
 
     /// Turns the head: x to the right, y downwards, in radians. It stops short of the poles.
@@ -24,13 +24,13 @@ public:
     void move(const glm::dvec3& ways, double seconds);
 
     /// Puts it elsewhere, at the same speed.
-    void place(const renderer::Camera& camera) { camera_ = camera; }
+    void place(const optics::Camera& camera) { camera_ = camera; }
 
     /// Faster, or slower where `steps` is negative.
     void change_speed(double steps);
 
 private:
-    renderer::Camera camera_;
+    optics::Camera camera_;
     double scene_size_;
     double speed_;
 };

@@ -16,7 +16,7 @@ constexpr double largest_distance = 1e3;
 
 }  // namespace
 
-OrbitCamera::OrbitCamera(const renderer::Camera& camera, double scene_size)
+OrbitCamera::OrbitCamera(const optics::Camera& camera, double scene_size)
     : camera_(camera), scene_size_(scene_size) {}
 
 void OrbitCamera::orbit(const glm::dvec2& turned) {

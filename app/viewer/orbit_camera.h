@@ -10,9 +10,9 @@ namespace cairn::app {
 class OrbitCamera {
 public:
     /// @param scene_size  the diagonal of the scene, world units, > 0: bounds how near and how far it can go.
-    OrbitCamera(const renderer::Camera& camera, double scene_size);
+    OrbitCamera(const optics::Camera& camera, double scene_size);
 
-    [[nodiscard]] const renderer::Camera& camera() const { return camera_; }
+    [[nodiscard]] const optics::Camera& camera() const { return camera_; }
 
     /// Turns the scene as if grabbed: x to the right, y downwards, in radians. It stops short of the poles.
     void orbit(const glm::dvec2& turned);
@@ -25,7 +25,7 @@ public:
     void zoom(double steps);
 
 private:
-    renderer::Camera camera_;
+    optics::Camera camera_;
     double scene_size_;
 };
 

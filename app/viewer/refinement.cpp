@@ -65,7 +65,7 @@ Band& Refinement::choose(const Pace& pace) {
 
 void Refinement::step(renderer::Renderer& renderer, Pace& pace) {
     Band& band = choose(pace);
-    const renderer::Image rows = renderer.render_rows_within(view_, band.rows, pace.aim_ms());
+    const optics::Image rows = renderer.render_rows_within(view_, band.rows, pace.aim_ms());
     const renderer::FrameStatistics& statistics = renderer.statistics();
     band.converged = statistics.converged;
     note_visit(band, rows, statistics);
@@ -73,7 +73,7 @@ void Refinement::step(renderer::Renderer& renderer, Pace& pace) {
     put(rows, band.rows.first);
 }
 
-void Refinement::note_visit(Band& band, const renderer::Image& rows,
+void Refinement::note_visit(Band& band, const optics::Image& rows,
                             const renderer::FrameStatistics& statistics) const {
     const auto before = image_.rgba.begin() + std::ptrdiff_t(band.rows.first) * view_.width * 4;
     const bool answered =
@@ -94,7 +94,7 @@ void Refinement::finish_stuck(renderer::Renderer& renderer) {
     }
 }
 
-void Refinement::put(const renderer::Image& rows, int first_row) {
+void Refinement::put(const optics::Image& rows, int first_row) {
     std::copy(rows.rgba.begin(), rows.rgba.end(),
               image_.rgba.begin() + std::ptrdiff_t(first_row) * view_.width * 4);
 }

@@ -25,7 +25,7 @@ public:
     explicit Refinement(const renderer::View& view);
 
     [[nodiscard]] const renderer::View& view() const { return view_; }
-    [[nodiscard]] const renderer::Image& image() const { return image_; }  ///< rows of no band are not filled
+    [[nodiscard]] const optics::Image& image() const { return image_; }  ///< rows of no band are not filled
     [[nodiscard]] const std::vector<Band>& bands() const { return bands_; }
     [[nodiscard]] bool empty() const { return image_.rgba.empty(); }
 
@@ -44,13 +44,12 @@ public:
     void finish_stuck(renderer::Renderer& renderer);
 
 private:
-    void note_visit(Band& band, const renderer::Image& rows,
-                    const renderer::FrameStatistics& statistics) const;
-    void put(const renderer::Image& rows, int first_row);
+    void note_visit(Band& band, const optics::Image& rows, const renderer::FrameStatistics& statistics) const;
+    void put(const optics::Image& rows, int first_row);
     [[nodiscard]] Band& choose(const Pace& pace);
 
     renderer::View view_;
-    renderer::Image image_;
+    optics::Image image_;
     std::vector<Band> bands_;
     int next_row_ = 0;  // of the first sweep
 };

@@ -53,7 +53,7 @@ Viewer::Viewer(renderer::Renderer& renderer, const renderer::View& view, double 
     view_.camera = first_camera_;
 }
 
-const renderer::Camera& Viewer::camera() const {
+const optics::Camera& Viewer::camera() const {
     return flying_ ? fly_.camera() : orbit_.camera();
 }
 
@@ -137,7 +137,7 @@ void Viewer::resize(const glm::ivec2& size) {
 void Viewer::step(double now) {
     if (flying_) fly_.move(ways_, std::clamp(now - last_step_, 0.0, longest_fly_step));
     last_step_ = now;
-    const renderer::Camera wanted = snapped(camera());
+    const optics::Camera wanted = snapped(camera());
     changed_ = changed_ || !(wanted == view_.camera);
     if (changed_) {
         view_.camera = wanted;
@@ -178,10 +178,10 @@ void Viewer::render_moving_frame() {
 /// Time that a moving frame has left goes to the bricks of the next one.
 void Viewer::prefetch_for(renderer::View next) {
     const double left_ms = frame_aim_ms - renderer_.statistics().milliseconds;
-    const renderer::Camera from = moved_from_.value_or(next.camera);
+    const optics::Camera from = moved_from_.value_or(next.camera);
     moved_from_ = next.camera;
     if (!renderer_.statistics().converged || left_ms < least_prefetch_ms || from == next.camera) return;
-    next.camera = renderer::extrapolated(from, next.camera);
+    next.camera = optics::extrapolated(from, next.camera);
     bricks_produced_ += renderer_.prefetch(next, left_ms);
 }
 

@@ -29,7 +29,7 @@ enum class Command : std::uint8_t {
 /// A converged picture that was asked for.
 struct TakenPicture {
     renderer::View view;
-    renderer::Image image;
+    optics::Image image;
 };
 
 /// The state of the explorer, without its window: input in, one piece of work at a time, pictures out.
@@ -63,7 +63,7 @@ public:
     [[nodiscard]] std::optional<TakenPicture> take_picture();
 
     /// The last whole picture, at any size, and the one that is growing over it (or empty).
-    [[nodiscard]] const renderer::Image& base() const { return base_; }
+    [[nodiscard]] const optics::Image& base() const { return base_; }
     [[nodiscard]] const Refinement& growing() const { return growing_; }
     [[nodiscard]] std::uint64_t base_revision() const { return base_revision_; }
     [[nodiscard]] std::uint64_t growing_revision() const { return growing_revision_; }
@@ -81,7 +81,7 @@ public:
     [[nodiscard]] std::uint64_t bricks_produced() const { return bricks_produced_; }
 
 private:
-    [[nodiscard]] const renderer::Camera& camera() const;
+    [[nodiscard]] const optics::Camera& camera() const;
     void render_moving_frame();
     void prefetch_for(renderer::View next);
     void grow();
@@ -91,7 +91,7 @@ private:
 
     renderer::Renderer& renderer_;
     renderer::View view_;  // wanted, at full size
-    renderer::Camera first_camera_;
+    optics::Camera first_camera_;
     double scene_size_;
     OrbitCamera orbit_;
     FlyCamera fly_;
@@ -103,9 +103,9 @@ private:
 
     Pace frame_pace_;
     Pace slice_pace_;
-    bool looks_ahead_ = false;                    // at rest, there may be more to prefetch
-    std::optional<renderer::Camera> moved_from_;  // the camera of the moving frame before
-    renderer::Image base_;
+    bool looks_ahead_ = false;                  // at rest, there may be more to prefetch
+    std::optional<optics::Camera> moved_from_;  // the camera of the moving frame before
+    optics::Image base_;
     Refinement growing_;
     std::optional<Refinement> picture_;
     std::optional<TakenPicture> taken_;

@@ -78,7 +78,7 @@ public:
         renderer::View view;
         view.width = size.x;
         view.height = size.y;
-        view.camera = renderer::framing_camera(snapshot.bounds, double(size.x) / size.y);
+        view.camera = optics::framing_camera(snapshot.bounds, double(size.x) / size.y);
         scene_ = path;
         triangles_ = std::int64_t(snapshot.triangle_count);
         beside_embree(scene, snapshot, view);

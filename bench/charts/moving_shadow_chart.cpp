@@ -51,7 +51,7 @@ public:
         view_.width = width;
         view_.height = height;
         // The ground receives shadows outside the grid too, and throws none.
-        view_.camera = renderer::framing_camera(voxelized_, double(width) / height);
+        view_.camera = optics::framing_camera(voxelized_, double(width) / height);
         const double size = 2.0 * glm::length(voxelized_.high - voxelized_.low);
         view_.light.positional = true;
         view_.light.position = 0.5 * (voxelized_.low + voxelized_.high) + size * glm::dvec3(0.5, 0.9, 0.3);

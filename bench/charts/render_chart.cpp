@@ -51,7 +51,7 @@ struct Errors {
     double silhouette = 0.0;  ///< wrongly covered area, as a share of what the scene covers
 };
 
-Errors errors_of(const renderer::Image& ours, const reference::ShadedImage& truth) {
+Errors errors_of(const optics::Image& ours, const reference::ShadedImage& truth) {
     double squares = 0.0;
     double wrong = 0.0;
     double covered = 0.0;
@@ -160,7 +160,7 @@ Chart chart_render(const ChartOptions& options) {
         const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
         renderer::View view;
         view.width = view.height = size;
-        view.camera = renderer::framing_camera(snapshot.bounds, 1.0);
+        view.camera = optics::framing_camera(snapshot.bounds, 1.0);
         const reference::ShadedImage truth = truth_of(scene, snapshot, view);
         Contest(scene, snapshot, view, options).add_rows(scene_name(path), truth, chart.table);
         done += 1.0 / double(scenes.size());

@@ -34,7 +34,7 @@ renderer::View view_from(double place) {
     return view;
 }
 
-double difference(const renderer::Image& ours, const std::vector<float>& alpha) {
+double difference(const optics::Image& ours, const std::vector<float>& alpha) {
     double sum = 0.0;
     for (std::size_t i = 0; i < alpha.size(); ++i)
         sum += std::abs(double(ours.rgba[4 * i + 3]) / 255.0 - double(alpha[i]));

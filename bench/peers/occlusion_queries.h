@@ -37,7 +37,7 @@ struct Visibility {
     std::uint64_t bricks_used = 0;  ///< that the rays of the picture read
     std::uint64_t missed = 0;       ///< tiles that they asked for in vain
     double milliseconds = 0.0;      ///< from an empty tree to the picture
-    renderer::Image image;
+    optics::Image image;
 };
 
 /// Tiles of the view that frustum culling and the oracle leave, each as fine as the view asks for.

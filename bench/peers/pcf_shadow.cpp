@@ -154,8 +154,8 @@ gl::Program evaluate_program(PcfFilter filter) {
 }
 
 /// Looks along +z, x along the light's half_u where it has one.
-glm::dmat4 light_space(const renderer::Light& light, const glm::dvec3& target) {
-    const bool is_flat = light.positional && light.shape != renderer::LightShape::sphere;
+glm::dmat4 light_space(const optics::Light& light, const glm::dvec3& target) {
+    const bool is_flat = light.positional && light.shape != optics::LightShape::sphere;
     glm::dvec3 forward = light.positional ? target - light.position : -light.towards;
     if (is_flat) {
         const glm::dvec3 normal = glm::cross(light.half_u, light.half_v);
@@ -172,13 +172,13 @@ glm::dmat4 light_space(const renderer::Light& light, const glm::dvec3& target) {
     return matrix;
 }
 
-glm::dvec2 half_of(const renderer::Light& light) {
+glm::dvec2 half_of(const optics::Light& light) {
     if (!light.positional) return glm::dvec2(std::tan(light.angle));
     // A square of the same area stands for what is round.
     const double square = 0.5 * std::sqrt(std::numbers::pi);
-    if (light.shape == renderer::LightShape::sphere) return glm::dvec2(square * light.radius);
+    if (light.shape == optics::LightShape::sphere) return glm::dvec2(square * light.radius);
     const glm::dvec2 half(glm::length(light.half_u), glm::length(light.half_v));
-    return light.shape == renderer::LightShape::disk ? square * half : half;
+    return light.shape == optics::LightShape::disk ? square * half : half;
 }
 
 gl::Buffer upload(std::span<const glm::dvec3> vectors, const glm::dmat4& matrix, double w) {
@@ -192,7 +192,7 @@ gl::Buffer upload(std::span<const glm::dvec3> vectors, const glm::dmat4& matrix,
 }  // namespace
 
 PcfShadow::PcfShadow(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
-                     const scenes::Snapshot& casters, const renderer::Light& light,
+                     const scenes::Snapshot& casters, const optics::Light& light,
                      std::span<const glm::dvec3> points, std::span<const glm::dvec3> normals)
     : mesh_(std::make_shared<renderer::ShadowMesh>(scene, snapshot)),
       is_perspective_(light.positional),
@@ -209,7 +209,7 @@ PcfShadow::PcfShadow(const scenes::Scene& scene, const scenes::Snapshot& snapsho
 }
 
 void PcfShadow::fit(const scenes::Snapshot& snapshot, const scenes::Snapshot& casters,
-                    const renderer::Light& light) {
+                    const optics::Light& light) {
     light_from_world_ = light_space(light, 0.5 * (casters.bounds.low + casters.bounds.high));
     low_ = glm::dvec2(1e300);
     high_ = glm::dvec2(-1e300);

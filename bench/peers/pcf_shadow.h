@@ -12,7 +12,7 @@
 #include "gl/buffer.h"
 #include "gl/handle.h"
 #include "gl/program.h"
-#include "renderer/light.h"
+#include "optics/light.h"
 #include "renderer/shadow/shadow_mesh.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
@@ -54,7 +54,7 @@ public:
     /// does
     ///                not fit.
     PcfShadow(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const scenes::Snapshot& casters,
-              const renderer::Light& light, std::span<const glm::dvec3> points,
+              const optics::Light& light, std::span<const glm::dvec3> points,
               std::span<const glm::dvec3> normals);
 
     struct Result {
@@ -68,7 +68,7 @@ private:
         gl::TextureHandle depths;
         gl::FramebufferHandle target;
     };
-    void fit(const scenes::Snapshot& snapshot, const scenes::Snapshot& casters, const renderer::Light& light);
+    void fit(const scenes::Snapshot& snapshot, const scenes::Snapshot& casters, const optics::Light& light);
     void make_samplers();
     [[nodiscard]] const Map& map_of(int size);
     void draw(const Map& map, const PcfOptions& options) const;

@@ -115,7 +115,7 @@ std::vector<double> truth(const scenes::Scene& scene, const scenes::Snapshot& sn
     return sums;
 }
 
-double rmse(const renderer::Image& image, const std::vector<double>& expected) {
+double rmse(const optics::Image& image, const std::vector<double>& expected) {
     double sum = 0.0;
     for (std::size_t pixel = 0; pixel * 3 < expected.size(); ++pixel) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -141,7 +141,7 @@ std::string measure(const std::string& path, int width, int height) {
         renderer::View view;
         view.width = width;
         view.height = height;
-        view.camera = renderer::framing_camera(snapshot.bounds, double(width) / height);
+        view.camera = optics::framing_camera(snapshot.bounds, double(width) / height);
         view.camera.eye = view.camera.target + distance * (view.camera.eye - view.camera.target);
         const std::vector<double> expected = truth(scene, snapshot, view);
         for (const Method& method : {Method{"nearest", false, renderer::LevelOfDetail::nearest},
@@ -155,7 +155,7 @@ std::string measure(const std::string& path, int width, int height) {
                 options.brick_pool_bytes = std::size_t(512) << 20U;
                 renderer::Renderer ours(scene, snapshot, options);
                 double start = cpu_ms();
-                const renderer::Image image = ours.render(view);
+                const optics::Image image = ours.render(view);
                 const double first_ms = cpu_ms() - start;
                 const renderer::FrameStatistics first = ours.statistics();
                 double frame_ms = std::numeric_limits<double>::infinity();

@@ -157,7 +157,7 @@ renderer::View Subject::view(int width, int height) const {
     renderer::View view;
     view.width = width;
     view.height = height;
-    view.camera = renderer::framing_camera(bounds_, double(width) / height);
+    view.camera = optics::framing_camera(bounds_, double(width) / height);
     return view;
 }
 

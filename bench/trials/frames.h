@@ -61,7 +61,7 @@ struct Entrant {
     double first_ms = 0.0;                ///< the first frame, into empty pools
     renderer::FrameStatistics first;      ///< of it
     renderer::FrameStatistics converged;  ///< of the last
-    renderer::Image image;                ///< of the last
+    optics::Image image;                  ///< of the last
     std::vector<double> samples_ms;       ///< converged frames
 
     Entrant(renderer::Renderer made, const renderer::View& view);

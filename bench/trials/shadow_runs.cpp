@@ -20,7 +20,7 @@ std::shared_ptr<renderer::Renderer> shadowing_renderer(const ShadowScene& scene,
 
 ShadowRun shadow_frame(renderer::Renderer& renderer, const renderer::View& view) {
     renderer.forget_picture();
-    renderer::LightShares found = renderer.light_shares(view);
+    optics::LightShares found = renderer.light_shares(view);
     const renderer::FrameStatistics& frame = renderer.statistics();
     return {frame.milliseconds, std::move(found.shares), frame.bricks_produced + frame.nodes_subdivided > 0};
 }
@@ -34,7 +34,7 @@ ShadowFrames pyramid_frames(const ShadowScene& scene, const renderer::PyramidSha
     const auto kept = std::make_shared<Kept>(
         Kept{renderer::PyramidShadowRenderer(scene.scene(), scene.all(), options, shaders)});
     return [kept](const renderer::View& view) {
-        renderer::LightShares found = kept->renderer.light_shares(view);
+        optics::LightShares found = kept->renderer.light_shares(view);
         const bool is_first = std::exchange(kept->is_first, false);
         return ShadowRun{kept->renderer.statistics().milliseconds, std::move(found.shares), is_first,
                          is_first};

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bench/trials/real_scenes.h"
-#include "renderer/shadow/rectangle_light.h"
+#include "renderer/shadow/shadow_frustum.h"
 #include "scenes/load.h"
 
 namespace cairn::bench {
@@ -45,24 +45,24 @@ void add_ground(scenes::Scene& scene, const scenes::Bounds& bounds) {
     scene.scenes[std::size_t(scene.default_scene)].nodes.push_back(int(scene.nodes.size()) - 1);
 }
 
-renderer::Light light_over(const scenes::Bounds& bounds) {
+optics::Light light_over(const scenes::Bounds& bounds) {
     const double diagonal = glm::length(bounds.high - bounds.low);
     const glm::dvec3 centre = 0.5 * (bounds.low + bounds.high);
     const glm::dvec3 position = centre + light_distance * diagonal * glm::normalize(to_light);
     const renderer::RectangleLight aimed =
         renderer::aimed_light(position, centre, light_side * diagonal, light_side * diagonal);
-    renderer::Light light;
+    optics::Light light;
     light.positional = true;
     light.position = position;
-    light.shape = renderer::LightShape::rectangle;
+    light.shape = optics::LightShape::rectangle;
     light.half_u = aimed.half_u;
     light.half_v = aimed.half_v;
     return light;
 }
 
-/// Steeper than renderer::framing_camera(), from as far: the ground shows more of its shadow.
-renderer::Camera camera_above(const scenes::Bounds& bounds, double aspect) {
-    renderer::Camera camera = renderer::framing_camera(bounds, aspect);
+/// Steeper than optics::framing_camera(), from as far: the ground shows more of its shadow.
+optics::Camera camera_above(const scenes::Bounds& bounds, double aspect) {
+    optics::Camera camera = optics::framing_camera(bounds, aspect);
     const double distance = glm::distance(camera.eye, camera.target);
     camera.eye = camera.target + distance * glm::normalize(glm::dvec3(0.3, 0.7, 1.0));
     return camera;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/light.h"
+#include "optics/light.h"
 #include "renderer/renderer.h"
 #include "scenes/node_selection.h"
 #include "scenes/scene.h"
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] const scenes::Snapshot& casters() const { return casters_; }  ///< all but the ground
     [[nodiscard]] const scenes::NodeSelection& caster_nodes() const { return caster_nodes_; }
     [[nodiscard]] const scenes::NodeSelection& ground_nodes() const { return ground_nodes_; }
-    [[nodiscard]] const renderer::Light& light() const { return light_; }
+    [[nodiscard]] const optics::Light& light() const { return light_; }
     /// All that throws shadows and the half of the shadow that is next to it, with that light. @param rays to
     /// it, a pixel
     [[nodiscard]] renderer::View view(int width, int height, int rays) const;
@@ -40,7 +40,7 @@ private:
     scenes::NodeSelection ground_nodes_, caster_nodes_;
     scenes::Snapshot all_, casters_;
     scenes::Bounds framed_;  ///< what pictures show
-    renderer::Light light_;
+    optics::Light light_;
 };
 
 }  // namespace cairn::bench

@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 
 #include "reference/image.h"
-#include "renderer/shadow/rectangle_light.h"
+#include "renderer/shadow/shadow_frustum.h"
 #include "renderer/shadow/shadow_mesh.h"
 #include "renderer/shadow/soft_shadow_map.h"
 #include "scenes/scene.h"

@@ -8,7 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
-#include "renderer/shadow/rectangle_light.h"
+#include "renderer/shadow/shadow_frustum.h"
 #include "renderer/shadow/shadow_mesh.h"
 #include "shaders/interop/types.h"
 

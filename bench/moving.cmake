@@ -1,7 +1,0 @@
-find_package(embree REQUIRED)
-add_executable(moving_bench programs/moving_bench.cpp)
-target_link_libraries(moving_bench PRIVATE cairn::voxelizer cairn::reference cairn::scenes cairn::gl embree fmt::fmt)
-if(EXISTS "${CAIRN_SCENE_DATA}/gltf")
-  target_compile_definitions(moving_bench PRIVATE CAIRN_SCENE_DATA="${CAIRN_SCENE_DATA}")
-endif()
-cairn_options(moving_bench)

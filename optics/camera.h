@@ -1,0 +1,24 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scenes/snapshot.h"
+
+namespace cairn::optics {
+
+/// A pinhole camera. Pixel (0, 0) is at the top left.
+struct Camera {
+    glm::dvec3 eye{0.0, 0.0, 1.0};
+    glm::dvec3 target{0.0};
+    glm::dvec3 up{0.0, 1.0, 0.0};
+    double yfov = 0.785398163397448;  ///< radians, the whole angle, in (0, pi)
+    bool operator==(const Camera&) const = default;
+};
+
+/// Looks at the whole of the bounds from the front, above and to the right.
+[[nodiscard]] Camera framing_camera(const scenes::Bounds& bounds, double aspect);
+
+/// Where a camera that moved from `before` to `now` will be after as much time again, if it goes on alike.
+[[nodiscard]] Camera extrapolated(const Camera& before, const Camera& now);
+
+}  // namespace cairn::optics

@@ -1,0 +1,141 @@
+#include "renderer/shadow/shadow_frustum.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace cairn::renderer {
+namespace {
+
+/// Tangents and depths of triangles, as far as they are not nearer than the near plane.
+struct Seen {
+    glm::dvec2 low{1e300};
+    glm::dvec2 high{-1e300};
+    double least_depth = 1e300;
+    double greatest_depth = 0.0;
+
+    void add(const glm::dvec3& p) {
+        const glm::dvec2 tangents = glm::clamp(glm::dvec2(p) / p.z, -max_shadow_tangent, max_shadow_tangent);
+        low = glm::min(low, tangents);
+        high = glm::max(high, tangents);
+        least_depth = std::min(least_depth, p.z);
+        greatest_depth = std::max(greatest_depth, p.z);
+    }
+    void add_edge(const glm::dvec3& a, const glm::dvec3& b, double near_distance) {
+        if (a.z >= near_distance) add(a);
+        if ((a.z >= near_distance) == (b.z >= near_distance)) return;
+        glm::dvec3 crossing = glm::mix(a, b, (near_distance - a.z) / (b.z - a.z));
+        crossing.z = near_distance;
+        add(crossing);
+    }
+    [[nodiscard]] bool nothing() const { return low.x > high.x; }
+};
+
+Seen seen_of(const glm::dmat4& from_world, const scenes::Snapshot& snapshot, double near_distance) {
+    Seen seen;
+    for (const scenes::Item& item : snapshot.items) {
+        const scenes::Primitive& primitive = *item.primitive;
+        if (primitive.topology != scenes::Topology::triangles) continue;
+        const glm::dmat4 from_mesh = from_world * item.world_from_mesh;
+        for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+            std::array<glm::dvec3, 3> corners;
+            for (std::size_t k = 0; k < 3; ++k)
+                corners[k] =
+                    glm::dvec3(from_mesh * glm::dvec4(item.positions[primitive.indices[i + k]], 1.0));
+            for (std::size_t k = 0; k < 3; ++k)
+                seen.add_edge(corners[k], corners[(k + 1) % 3], near_distance);
+        }
+    }
+    return seen;
+}
+
+double greatest_depth(const glm::dmat4& from_world, const scenes::Snapshot& snapshot) {
+    double depth = 0.0;
+    if (snapshot.bounds.empty()) return depth;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 corner((i & 1 ? snapshot.bounds.high : snapshot.bounds.low).x,
+                                (i & 2 ? snapshot.bounds.high : snapshot.bounds.low).y,
+                                (i & 4 ? snapshot.bounds.high : snapshot.bounds.low).z);
+        depth = std::max(depth, (from_world * glm::dvec4(corner, 1.0)).z);
+    }
+    return depth;
+}
+
+/// Never without an extent: a sheet seen edge-on has none along one axis.
+ShadowWindow window_of(glm::dvec2 low, glm::dvec2 high) {
+    constexpr double least = 1e-5;
+    for (int axis = 0; axis < 2; ++axis) {
+        if (high[axis] - low[axis] >= least) continue;
+        const double middle = 0.5 * (low[axis] + high[axis]);
+        low[axis] = middle - 0.5 * least;
+        high[axis] = middle + 0.5 * least;
+    }
+    return {low, high};
+}
+
+}  // namespace
+
+RectangleLight aimed_light(const glm::dvec3& centre, const glm::dvec3& target, double width, double height,
+                           const glm::dvec3& up) {
+    const glm::dvec3 way = target - centre;
+    if (!(width > 0.0) || !(height > 0.0) || !(glm::length(way) > 0.0)) {
+        throw Error(Fault::usage, "light", "a rectangle needs a width, a height and a target to shine on");
+    }
+    const glm::dvec3 forward = glm::normalize(way);
+    glm::dvec3 across = glm::cross(up, forward);
+    if (glm::length(across) < 1e-6 * glm::length(up))  // straight up or down: any direction is level
+        across = std::abs(forward.x) < 0.5 ? glm::cross(glm::dvec3(1, 0, 0), forward)
+                                           : glm::cross(glm::dvec3(0, 0, 1), forward);
+    across = glm::normalize(across);
+    return {centre, 0.5 * width * across, 0.5 * height * glm::cross(forward, across)};
+}
+
+glm::dvec2 half_size(const RectangleLight& light) {
+    return {glm::length(light.half_u), glm::length(light.half_v)};
+}
+
+glm::dmat4 light_from_world(const RectangleLight& light) {
+    const glm::dvec2 half = half_size(light);
+    if (!(half.x > 0.0) || !(half.y > 0.0) || !std::isfinite(half.x + half.y)) {
+        throw Error(Fault::usage, "light", "a half axis of the rectangle has no length",
+                    "give a small rectangle instead of a point or a line");
+    }
+    const glm::dvec3 u = light.half_u / half.x;
+    const glm::dvec3 v = light.half_v / half.y;
+    if (std::abs(glm::dot(u, v)) > 1e-6) {
+        throw Error(Fault::usage, "light", "the half axes of the rectangle are not at a right angle");
+    }
+    const glm::dmat3 axes = glm::transpose(glm::dmat3(u, v, glm::cross(u, v)));
+    glm::dmat4 matrix(axes);
+    matrix[3] = glm::dvec4(-(axes * light.centre), 1.0);
+    return matrix;
+}
+
+ShadowFrustum fit_shadow_frustum(const RectangleLight& light, const scenes::Snapshot& occluders,
+                                 const scenes::Snapshot& receivers, double near_distance) {
+    const glm::dmat4 from_world = light_from_world(light);
+    ShadowFrustum frustum;
+    frustum.near_distance = near_distance;
+    if (!(near_distance > 0.0)) {
+        const double depth =
+            std::max(greatest_depth(from_world, occluders), greatest_depth(from_world, receivers));
+        frustum.near_distance = depth > 0.0 ? 1e-3 * depth : 1.0;
+    }
+    const Seen casts = seen_of(from_world, occluders, frustum.near_distance);
+    const Seen takes = seen_of(from_world, receivers, frustum.near_distance);
+    if (!casts.nothing()) frustum.occluders = window_of(casts.low, casts.high);
+    if (takes.nothing()) return frustum;
+    frustum.receivers = window_of(takes.low, takes.high);
+    if (casts.nothing()) return frustum;
+    // Penumbra extents reach furthest for the nearest occluder and the furthest receiver (Atty et al., 3.3).
+    const glm::dvec2 reach =
+        half_size(light) * std::max(0.0, 1.0 / casts.least_depth - 1.0 / takes.greatest_depth);
+    const glm::dvec2 low = glm::max(takes.low, casts.low - reach);
+    const glm::dvec2 high = glm::min(takes.high, casts.high + reach);
+    if (low.x < high.x && low.y < high.y) frustum.receivers = window_of(low, high);
+    return frustum;
+}
+
+}  // namespace cairn::renderer

@@ -1,0 +1,184 @@
+// `cairn render`, from the command line to the PNG.
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <set>
+#include <string>
+#include <vector>
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#include <gtest/gtest.h>
+#include <stb/stb_image.h>
+
+#include "tests/support/command.h"
+#include "tests/support/gltf_file.h"
+#include "tests/support/scratch_folder.h"
+
+namespace cairn::test {
+namespace {
+
+struct Picture {
+    int width = 0;
+    int height = 0;
+    int channels = 0;
+    std::vector<std::uint8_t> values;
+
+    explicit Picture(const std::string& path) {
+        std::uint8_t* const loaded = stbi_load(path.c_str(), &width, &height, &channels, 0);
+        if (loaded == nullptr) throw std::runtime_error(path + ": no PNG");
+        values.assign(loaded, loaded + std::ptrdiff_t(width) * height * channels);
+        stbi_image_free(loaded);
+    }
+    [[nodiscard]] std::vector<std::uint8_t> at(int x, int y) const {
+        const auto first = values.begin() + (std::ptrdiff_t(y) * width + x) * channels;
+        return {first, first + channels};
+    }
+    [[nodiscard]] std::size_t color_count() const {
+        std::set<std::vector<std::uint8_t>> colors;
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x)
+                colors.insert(at(x, y));
+        }
+        return colors.size();
+    }
+    [[nodiscard]] double brightness() const {
+        double sum = 0.0;
+        for (const std::uint8_t value : values)
+            sum += value;
+        return sum / double(values.size());
+    }
+};
+
+int largest_difference(const Picture& a, const Picture& b) {
+    if (a.values.size() != b.values.size()) return 256;
+    int largest = 0;
+    for (std::size_t i = 0; i < a.values.size(); ++i)
+        largest = std::max(largest, std::abs(a.values[i] - b.values[i]));
+    return largest;
+}
+
+/// Renders with more options, and reads the picture back.
+Picture picture_of(const ScratchFolder& folder, const std::string& scene,
+                   const std::vector<std::string>& options) {
+    std::vector<std::string> run = {"render", scene,   "-o",     folder.file("picture.png"),
+                                    "--size", "96x64", "--quiet"};
+    run.insert(run.end(), options.begin(), options.end());
+    const Answer answer = cairn(run);
+    EXPECT_EQ(answer.code, 0) << answer;
+    return Picture(folder.file("picture.png"));
+}
+
+TEST(AppRender, WritesAPictureOfTheSceneAndItsFigures) {
+    const ScratchFolder folder;
+    const auto figures =
+        cairn_json({"render", "builtin:knot", "--size", "160x120", "-o", folder.file("knot.png")});
+    for (const char* key :
+         {"frame_ms", "first_frame_ms", "passes", "bricks_produced", "bricks_resident", "node_pool_bytes",
+          "brick_pool_bytes", "peak_rss_bytes", "driver", "load_ms", "context_ms", "setup_ms", "write_ms"}) {
+        EXPECT_TRUE(figures.contains(key)) << key << " is not in " << figures.dump();
+    }
+    EXPECT_GT(figures["passes"], 0);
+    EXPECT_GT(figures["bricks_produced"], 0);
+    const Picture picture(folder.file("knot.png"));
+    EXPECT_EQ(picture.width, 160);
+    EXPECT_EQ(picture.height, 120);
+    EXPECT_EQ(picture.channels, 3) << "the background is blended in, so there is no alpha";
+    EXPECT_GT(picture.color_count(), 50U);
+    EXPECT_EQ(picture.at(0, 0), picture.at(159, 119)) << "the default camera leaves a margin";
+    EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AppRender, DefaultOutputIsInTheWorkingFolder) {
+    const ScratchFolder folder;
+    const Answer answer = cairn({"render", "builtin:cornell", "--size", "16x16"}, {.folder = folder.path()});
+    EXPECT_EQ(answer.code, 0) << answer;
+    EXPECT_NE(answer.out.find("cairn.png"), std::string::npos) << answer;
+    EXPECT_EQ(Picture(folder.file("cairn.png")).width, 16);
+}
+
+TEST(AppRender, ShadowsDarken) {
+    const ScratchFolder folder;
+    const double with = picture_of(folder, "builtin:spheres", {"--shadow", "hard"}).brightness();
+    const double without = picture_of(folder, "builtin:spheres", {"--shadow", "none"}).brightness();
+    EXPECT_LT(with, without);
+}
+
+TEST(AppRender, CameraAndLightAreObeyed) {
+    const ScratchFolder folder;
+    const auto from = [&](const std::string& camera, const std::string& light) {
+        return picture_of(folder, "builtin:knot", {"--camera", camera, "--light", light}).values;
+    };
+    const auto picture = from("0,0,6,0,0,0,40", "3,4,5");
+    EXPECT_EQ(picture, from("0,0,6,0,0,0,40", "3,4,5")) << "the same twice";
+    EXPECT_NE(picture, from("0,0,6,0,0,0,60", "3,4,5")) << "field of view";
+    EXPECT_NE(picture, from("-1,0,6,0,0,0,40", "3,4,5")) << "eye";
+    EXPECT_NE(picture, from("0,0,6,0,1,0,40", "3,4,5")) << "target";
+    EXPECT_NE(picture, from("0,0,6,0,0,0,40", "-3,4,5")) << "light";
+}
+
+TEST(AppRender, LooksStraightDown) {
+    const ScratchFolder folder;
+    EXPECT_GT(picture_of(folder, "builtin:knot", {"--camera", "0,6,0,0,0,0"}).color_count(), 10U);
+    EXPECT_GT(picture_of(folder, "builtin:knot", {"--camera", "0,-6,0,0,0,0"}).color_count(), 10U);
+}
+
+/// A square in the plane z = 0, and a light of the scene's own.
+void write_lit_square(const std::string& path, const Json& light, const Json& node_of_light) {
+    GltfFile file;
+    const int positions = file.add_accessor<float>({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, "VEC3");
+    file.json["accessors"][0]["min"] = {-1, -1, 0};
+    file.json["accessors"][0]["max"] = {1, 1, 0};
+    const int indices = file.add_accessor<std::uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR");
+    file.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}});
+    file.json["extensionsUsed"] = {"KHR_lights_punctual"};
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] = Json::array({light});
+    Json node = node_of_light;
+    node["extensions"]["KHR_lights_punctual"]["light"] = 0;
+    file.add_root(node);
+    file.write_gltf(path);
+}
+
+TEST(AppRender, TheScenesOwnLightGivesItsColorAndDirection) {
+    const ScratchFolder folder;
+    const std::vector<std::string> front = {"--camera", "0,0,4,0,0,0"};
+    // It shines along -Z of its node: untouched, on the side that the camera sees.
+    write_lit_square(folder.file("front.gltf"), {{"type", "directional"}, {"color", {1.0, 0.0, 0.0}}},
+                     {{"name", "sun"}});
+    const std::vector<std::uint8_t> red = picture_of(folder, folder.file("front.gltf"), front).at(48, 32);
+    EXPECT_GT(red[0], red[1] + 50) << "red light on a white square";
+    EXPECT_EQ(red[1], red[2]);
+
+    const Json point = {{"type", "point"}, {"color", {0.0, 0.0, 1.0}}};
+    write_lit_square(folder.file("point.gltf"), point, {{"translation", {0.0, 0.0, 3.0}}});
+    const std::vector<std::uint8_t> blue = picture_of(folder, folder.file("point.gltf"), front).at(48, 32);
+    EXPECT_GT(blue[2], blue[0] + 50) << "blue light on a white square";
+}
+
+TEST(AppRender, AnEmptySceneIsBackground) {
+    const ScratchFolder folder;
+    write_text(folder.file("empty.gltf"), R"({"asset": {"version": "2.0"}, "scenes": [{}], "scene": 0})");
+    EXPECT_EQ(picture_of(folder, folder.file("empty.gltf"), {}).color_count(), 1U);
+}
+
+TEST(AppRender, ASmallPoolGivesTheSamePicture) {
+    const ScratchFolder folder;
+    const Picture roomy = picture_of(folder, "builtin:knot", {});
+    const Picture tight = picture_of(folder, "builtin:knot", {"--brick-pool", "4"});
+    EXPECT_EQ(largest_difference(roomy, tight), 0);
+}
+
+TEST(AppRender, ResolutionIsBounded) {
+    const ScratchFolder folder;
+    const auto bricks = [&](const char* resolution) {
+        return cairn_json({"render", "builtin:knot", "--size", "160x120", "--max-resolution", resolution,
+                           "-o", folder.file("a.png")})["bricks_produced"]
+            .get<int>();
+    };
+    EXPECT_LT(bricks("32"), bricks("2048"));
+}
+
+}  // namespace
+}  // namespace cairn::test

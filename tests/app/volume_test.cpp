@@ -1,0 +1,81 @@
+// Volumes on the command line.
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/command.h"
+#include "tests/support/scratch_folder.h"
+
+namespace cairn::test {
+namespace {
+
+class VolumeCommand : public ::testing::Test {
+protected:
+    [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+    /// 8 x 4 x 2 samples, all 200.
+    [[nodiscard]] std::string block() const {
+        write_text(
+            folder_.path() / "block.mha",
+            std::string("NDims = 3\nDimSize = 8 4 2\nElementSpacing = 0.5 1 1\nElementType = MET_UCHAR\n"
+                        "ElementDataFile = LOCAL\n") +
+                std::string(64, '\xC8'));
+        return path("block.mha");
+    }
+
+private:
+    ScratchFolder folder_;
+};
+
+TEST_F(VolumeCommand, InfoTellsSamplesSpacingValuesAndBounds) {
+    const nlohmann::json json = cairn_json({"info", block()});
+    EXPECT_EQ(json.at("samples"), nlohmann::json({8, 2, 4}));
+    EXPECT_EQ(json.at("spacing"), nlohmann::json({0.5, 1.0, 1.0}));
+    EXPECT_EQ(json.at("greatest_value"), 255.0);
+    EXPECT_EQ(json.at("bounds_low"), nlohmann::json({-0.25, -0.5, -3.5}));
+    EXPECT_EQ(json.at("bounds_high"), nlohmann::json({3.75, 1.5, 0.5}));
+}
+
+TEST_F(VolumeCommand, RenderMakesAPictureAndCountsVoxels) {
+    const nlohmann::json json =
+        cairn_json({"render", block(), "--size", "32x24", "--copies", "2", "-o", path("block.png")});
+    EXPECT_EQ(json.at("voxels"), nlohmann::json({32, 32, 32}));  // twice the least power of 4 that holds 8
+    EXPECT_GT(json.at("bricks_produced").get<int>(), 0);
+    EXPECT_TRUE(std::ifstream(path("block.png")).good());
+    const nlohmann::json ball =
+        cairn_json({"render", "builtin:ball", "--size", "32x24", "--max-resolution", "64", "--transfer",
+                    "0:1,1,1:0;1:1,0.5,0:0.3", "-o", path("ball.png")});
+    EXPECT_EQ(ball.at("voxels"), nlohmann::json({64, 64, 64}));
+}
+
+TEST_F(VolumeCommand, WhatNeedsSurfacesSaysSo) {
+    for (const char* verb : {"voxelize", "check"}) {
+        const Answer answer = cairn({verb, "builtin:ball", "-r", "16"});
+        EXPECT_EQ(answer.code, 2) << answer;
+        EXPECT_NE(answer.err.find("that is a volume"), std::string::npos) << answer;
+    }
+    const Answer surface = cairn({"render", "builtin:knot", "--transfer", "bone", "-o", path("knot.png")});
+    EXPECT_EQ(surface.code, 2) << surface;
+    EXPECT_NE(surface.err.find("no volume"), std::string::npos) << surface;
+    const Answer moment = cairn({"render", "builtin:ball", "--time", "1", "-o", path("ball.png")});
+    EXPECT_EQ(moment.code, 2) << moment;
+}
+
+TEST_F(VolumeCommand, BadTransferFunctionsAreWrongUsage) {
+    for (const char* text : {"glass", "", "0.5", "0:1,1:1", "0:1,1,1", "0:1,1,1:-1", "2:1,1,1:1",
+                             "1:1,1,1:1;0:1,1,1:1", "0:1,1,1:nan", "0:2,1,1:1"}) {
+        const Answer answer = cairn({"render", "builtin:ball", "--transfer", text, "-o", path("ball.png")});
+        EXPECT_EQ(answer.code, 2) << text << answer;
+        EXPECT_FALSE(answer.err.empty()) << text;
+    }
+}
+
+TEST_F(VolumeCommand, DamagedFileIsABadInput) {
+    write_text(path("bad.nii"), "not at all");
+    const Answer answer = cairn({"render", path("bad.nii"), "-o", path("bad.png")});
+    EXPECT_EQ(answer.code, 3) << answer;
+    EXPECT_NE(answer.err.find("bad.nii"), std::string::npos) << answer;
+}
+
+}  // namespace
+}  // namespace cairn::test

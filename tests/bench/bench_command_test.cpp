@@ -1,0 +1,227 @@
+// `cairn bench`, run as a user runs it, at tiny sizes.
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/command.h"
+#include "tests/support/scratch_folder.h"
+
+namespace cairn::test {
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);)
+        lines.push_back(line);
+    return lines;
+}
+
+TEST(BenchVoxelize, WritesATableOfEveryMethodAndAPicture) {
+    const ScratchFolder folder;
+    const nlohmann::json answer =
+        cairn_json({"bench", "voxelize", "--scene", "builtin:cornell", "--resolutions", "16,8", "--runs", "1",
+                    "-o", folder.file("charts")});
+    const std::vector<std::string> lines = lines_of(read_text(folder.file("charts/voxelize.csv")));
+    ASSERT_GE(lines.size(), 1U + 2U * 3U);
+    EXPECT_EQ(lines[0], "scene,resolution,method,triangles,occupied,missing,extra,error,ms,threads,driver");
+    for (const char* row : {"cornell,8,conservative,", "cornell,16,conservative,",
+                            "cornell,16,three-directions,", "cornell,16,cpu-row-span,"}) {
+        EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+            return line.starts_with(row);
+        })) << row;
+    }
+    for (const nlohmann::json& row : answer["measurements"]) {
+        EXPECT_GT(row["milliseconds"], 0.0) << row;
+        const std::string method = row["method"];
+        if (method == "conservative" || method == "cpu-row-span") {
+            EXPECT_EQ(row["missing"], 0) << row;
+            EXPECT_EQ(row["extra"], 0) << row;
+            EXPECT_GT(row["occupied"], 0) << row;
+        }
+        EXPECT_EQ(row.contains("error"), method != "three-directions") << row;
+    }
+#ifdef CAIRN_HAS_GNUPLOT
+    EXPECT_TRUE(read_text(folder.file("charts/voxelize.png"))
+                    .starts_with("\x89"
+                                 "PNG"));
+#endif
+}
+
+TEST(BenchVoxelize, SaysThatGnuplotIsMissingAndStillWritesTheTable) {
+    const ScratchFolder folder;
+    const Answer answer = cairn({"bench", "voxelize", "--scene", "builtin:cornell", "--resolutions", "8",
+                                 "--runs", "1", "-o", folder.path().string()},
+                                {.environment = {{"PATH", folder.path().string()}}});
+    EXPECT_EQ(answer.code, 0) << answer;
+    EXPECT_NE(answer.err.find("gnuplot is not installed"), std::string::npos) << answer;
+    EXPECT_TRUE(std::filesystem::exists(folder.file("voxelize.csv")));
+    EXPECT_FALSE(std::filesystem::exists(folder.file("voxelize.png")));
+}
+
+/// Runs a chart of tiny size. @return its rows, which the CSV has too.
+nlohmann::json rows_of(const std::string& chart, const std::string& size, const std::string& scene,
+                       const ScratchFolder& folder) {
+    std::vector<std::string> words = {"bench", chart, "--resolutions",       size, "--runs",
+                                      "1",     "-o",  folder.path().string()};
+    if (!scene.empty()) words.insert(words.end(), {"--scene", scene});
+    nlohmann::json rows = cairn_json(words)["measurements"];
+    const std::vector<std::string> lines = lines_of(read_text(folder.file(chart + ".csv")));
+    EXPECT_EQ(lines.size(), rows.size() + 1) << chart;
+    EXPECT_TRUE(lines[0].ends_with(",driver,threads")) << lines[0];
+    return rows;
+}
+
+TEST(BenchEmbree, ComparesWithSingleRaysAndPackets) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("embree", "32", "builtin:cornell", folder);
+    ASSERT_GE(rows.size(), 2U);
+    EXPECT_EQ(rows[0]["method"], "embree-single");
+    EXPECT_EQ(rows[1]["method"], "embree-packets");
+    for (const nlohmann::json& row : rows) {
+        EXPECT_GT(row["milliseconds"], 0.0) << row;
+        EXPECT_GT(row["ours_ms"], 0.0) << row;
+        EXPECT_GT(row["bricks"], 0) << row;
+    }
+}
+
+TEST(BenchRender, HasTheSamePictureByAllTraversalsAndPools) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("render", "32", "builtin:cornell", folder);
+    const auto base = std::find_if(rows.begin(), rows.end(), [](const nlohmann::json& row) {
+        return row["varied"] == "shape" && row["n"] == 4 && row["m"] == 16 && row["pixel_error"] == 1.0;
+    });
+    ASSERT_NE(base, rows.end());
+    int others = 0;
+    for (const nlohmann::json& row : rows) {
+        EXPECT_GT(row["rmse"], 0.0) << row;
+        EXPECT_LT(row["rmse"], 0.3) << row;
+        EXPECT_GT(row["bricks_used"], 0) << row;
+        if (row["varied"] == "shape") continue;
+        ++others;
+        EXPECT_EQ(row["rmse"], (*base)["rmse"]) << row;
+        EXPECT_EQ(row["silhouette"], (*base)["silhouette"]) << row;
+    }
+    EXPECT_GE(others, 4);
+#ifdef CAIRN_HAS_GNUPLOT
+    EXPECT_TRUE(read_text(folder.file("render.png"))
+                    .starts_with("\x89"
+                                 "PNG"));
+#endif
+}
+
+TEST(BenchResolution, StaysWithinThePools) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("resolution", "32,128", "builtin:spheres-repeated", folder);
+    ASSERT_EQ(rows.size(), 4U);
+    for (const nlohmann::json& row : rows) {
+        EXPECT_GT(row["bricks_used"], 0) << row;
+        EXPECT_LE(row["bricks_resident"], row["brick_slots"]) << row;
+    }
+    EXPECT_EQ(rows[0]["growth"], 1.0);
+    EXPECT_GT(rows[1]["bricks_used"], rows[0]["bricks_used"]);
+}
+
+TEST(BenchStructure, HasTheSamePictureAsARegularGrid) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("structure", "32", "", folder);
+    std::map<std::string, int> methods;
+    std::map<double, double> apart;
+    for (const nlohmann::json& row : rows) {
+        ++methods[row["method"]];
+        EXPECT_LT(row["coverage_difference"], 0.03) << row;
+        if (row["method"] == "regular-grid" || row["varied"] != "place") continue;
+        const auto [known, is_new] = apart.try_emplace(row["place"], row["coverage_difference"]);
+        if (!is_new) {
+            EXPECT_EQ(row["coverage_difference"], known->second) << row;
+        }
+    }
+    EXPECT_EQ(methods["regular-grid"], 5);
+    EXPECT_EQ(methods["restart"], 4);
+    EXPECT_EQ(methods["stackless"], 4);
+    EXPECT_GE(methods["mini-stack"], 4 + 3);
+}
+
+TEST(BenchExploration, CountsWhatAMovingCameraNeeds) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("exploration", "32", "builtin:cornell", folder);
+    ASSERT_EQ(rows.size(), 5U);
+    EXPECT_EQ(rows[0]["part"], "exploration");
+    EXPECT_GT(rows[0]["bricks"], 0.0);
+    EXPECT_EQ(rows[1]["part"], "steady");
+    EXPECT_GT(rows[1]["bricks"], 0.0);
+    for (const nlohmann::json& row : rows) {
+        EXPECT_GE(row["milliseconds"], row["render_ms"]) << row;
+        EXPECT_GE(row["passes"], 1.0) << row;
+        const double parts = double(row["bricks_ms"]) + double(row["upload_ms"]) + double(row["tree_ms"]);
+        EXPECT_GE(row["milliseconds"], parts) << row;
+        EXPECT_GE(row["bricks_ms"], 0.0) << row;
+        EXPECT_GT(row["upload_ms"], 0.0) << row;
+        if (row["part"] != "exploration" && row["part"] != "steady") {
+            EXPECT_EQ(row["bricks"], 0.0) << row;
+        }
+    }
+}
+
+TEST(BenchExploration, ExploresTheSpongeInATreeOfItsOwn) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("exploration", "24", "builtin:sponge", folder);
+    ASSERT_EQ(rows.size(), 5U);
+    EXPECT_EQ(rows[0]["scene"], "sponge");
+    EXPECT_GT(rows[0]["bricks"], 0.0);
+}
+
+TEST(BenchProduction, ProducesWhatIsUsed) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("production", "64", "builtin:cornell", folder);
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_GT(rows[0]["bricks_used"], 0);
+    EXPECT_GE(rows[0]["bricks_produced"], rows[0]["bricks_used"]);
+    EXPECT_LT(rows[0]["produced_over_used"], 1.3);
+    EXPECT_GT(rows[0]["brick_ms"], 0.0);
+}
+
+TEST(BenchVisibility, RaysProduceLessThanQueriesAndQueriesLessThanTheFrustum) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("visibility", "48", "builtin:knot", folder);
+    ASSERT_EQ(rows.size(), 3U * 4U);
+    const std::vector<std::string> schemes = {"ray-guided", "occlusion-query", "occlusion-query-waiting",
+                                              "frustum"};
+    std::int64_t by_rays = 0, by_frustum = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const nlohmann::json& row = rows[i];
+        EXPECT_EQ(row["scheme"], schemes[i % 4]) << row;
+        EXPECT_EQ(row["view"], rows[i / 4 * 4]["view"]) << row;
+        EXPECT_EQ(row["missed"], 0) << row;
+        EXPECT_GT(row["bricks_used"], 0) << row;
+        EXPECT_GE(row["bricks_produced"], rows[i / 4 * 4]["bricks_produced"]) << row;
+        EXPECT_LE(row["bricks_produced"], rows[i / 4 * 4 + 3]["bricks_produced"]) << row;
+        EXPECT_EQ(row["queries"] > 0, i % 4 == 2 || (i % 4 == 1 && row["passes"] > 1)) << row;
+        EXPECT_GE(row["passes"], 1) << row;
+        (i % 4 == 0 ? by_rays : by_frustum) += i % 4 % 3 == 0 ? row["bricks_produced"].get<int>() : 0;
+    }
+    EXPECT_LT(by_rays, by_frustum);
+}
+
+TEST(BenchUsage, HasHelpThatFitsATerminal) {
+    const Answer answer = cairn({"bench", "--help"});
+    EXPECT_EQ(answer.code, 0) << answer;
+    for (const char* word : {"voxelize", "render", "--scenes", "--resolutions", "--truth-cache", "--json"})
+        EXPECT_NE(answer.out.find(word), std::string::npos) << word;
+    for (const std::string& line : lines_of(answer.out))
+        EXPECT_LE(line.size(), 100U) << line;
+}
+
+TEST(BenchUsage, NamesTheChartsThatThereAre) {
+    const Answer answer = cairn({"bench", "shadows"});
+    EXPECT_EQ(answer.code, 2) << answer;
+    EXPECT_NE(answer.err.find("choose one of: voxelize, embree, render"), std::string::npos) << answer;
+    for (const char* sizes : {"0", "64.5", "100000", "x"})
+        EXPECT_EQ(cairn({"bench", "voxelize", "--resolutions", sizes}).code, 2) << sizes;
+}
+
+}  // namespace
+}  // namespace cairn::test

@@ -1,0 +1,169 @@
+// Pictures refined in slices of rows while the pools are full: how much is produced until they come to rest.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "app/viewer/refinement.h"
+#include "renderer/produce/batch_pace.h"
+#include "renderer/renderer.h"
+#include "scenes/builtin/builtin.h"
+#include "scenes/snapshot.h"
+#include "tests/support/gl_fixture.h"
+
+namespace cairn::test {
+namespace {
+
+using optics::Image;
+using renderer::BatchPace;
+using renderer::Renderer;
+using renderer::TreeOptions;
+using renderer::View;
+
+/// What a refinement took until it came to rest.
+struct Course {
+    int steps = 0;
+    std::uint64_t produced = 0;
+    std::uint64_t evicted = 0;
+    bool settled = false;
+    bool converged = false;
+    optics::Image image;
+};
+
+Course refine(Renderer& renderer, const View& view) {
+    constexpr int most_steps = 2000;
+    app::Pace pace(1e-3, app::Pace::least_pixels);  // no time at all, in bands as low as they get
+    app::Refinement refinement(view);
+    Course course;
+    for (; !refinement.settled() && course.steps < most_steps; ++course.steps) {
+        refinement.step(renderer, pace);
+        course.produced += renderer.statistics().bricks_produced;
+        course.evicted += renderer.statistics().bricks_evicted;
+    }
+    course.settled = refinement.settled();
+    course.converged = refinement.converged();
+    course.image = refinement.image();
+    return course;
+}
+
+class CacheConvergence : public GlTest {
+protected:
+    CacheConvergence() : scene_(scenes::make_builtin("knot")) {
+        view_.width = 128;
+        view_.height = 96;
+        view_.pixel_error = 0.4;
+        view_.camera = optics::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0);
+        behind_ = view_;
+        behind_.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
+    }
+
+    [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
+        return Renderer(scene_, scenes::take_snapshot(scene_), options);
+    }
+    /// A renderer whose pool holds a share of what a view needs, and is full with bricks of other views.
+    [[nodiscard]] Renderer full(std::uint64_t needed, double share) const {
+        TreeOptions options;
+        options.brick_pool_bytes = std::size_t(double(needed) * share) * slot_bytes;
+        Renderer renderer = make(options);
+        View near_view = view_;
+        near_view.camera.eye = glm::mix(view_.camera.target, view_.camera.eye, 0.7);
+        (void)renderer.render(near_view);
+        near_view.camera.eye.x = 2.0 * view_.camera.target.x - near_view.camera.eye.x;
+        (void)renderer.render(near_view);
+        (void)renderer.render(view_);
+        EXPECT_EQ(renderer.statistics().bricks_resident, renderer.statistics().brick_slots);
+        return renderer;
+    }
+    [[nodiscard]] std::uint64_t need_of(const View& view) const {
+        Renderer fresh = make();
+        (void)fresh.render(view);
+        return fresh.statistics().bricks_produced;
+    }
+
+    static constexpr std::size_t slot_bytes = 18 * 18 * 18 * 5 + 65 * 8;  // the knot has one colour
+    scenes::Scene scene_;
+    View view_;
+    View behind_;
+};
+
+TEST_F(CacheConvergence, PoolThatHoldsTheViewIsRefinedWithoutProducingTwice) {
+    const std::uint64_t needed = need_of(behind_);
+    Renderer renderer = full(needed, 1.1);
+    const Course course = refine(renderer, behind_);
+    fmt::print("{} bricks of {}, {} steps\n", course.produced, needed, course.steps);
+    EXPECT_TRUE(course.converged);
+    EXPECT_LE(course.produced, needed + needed / 8);
+    EXPECT_EQ(course.image.rgba, make().render(behind_).rgba);
+}
+
+TEST_F(CacheConvergence, PoolThatHoldsOnlyBandsConvergesBandByBand) {
+    const std::uint64_t needed = need_of(behind_);
+    Renderer renderer = full(needed, 0.8);
+    const Course course = refine(renderer, behind_);
+    fmt::print("{} bricks of {}, {} evicted, {} steps\n", course.produced, needed, course.evicted,
+               course.steps);
+    EXPECT_TRUE(course.converged);
+    EXPECT_LE(course.produced, needed * 3 / 2) << "bands evict each other's bricks";
+    EXPECT_EQ(course.image.rgba, make().render(behind_).rgba);
+}
+
+TEST_F(CacheConvergence, PoolThatHoldsNoBandComesToRest) {
+    const std::uint64_t needed = need_of(behind_);
+    Renderer renderer = full(needed, 0.08);
+    const Course course = refine(renderer, behind_);
+    fmt::print("{} bricks of {}, {} steps\n", course.produced, needed, course.steps);
+    EXPECT_TRUE(course.settled) << "it goes on without end";
+    EXPECT_FALSE(course.converged) << "the pool was not too small";
+    EXPECT_LE(course.produced, needed * 2) << "the same bricks are produced again and again";
+    // Once it is at rest, more visits change nothing.
+    int idle = 0;
+    for (int visit = 0; visit < 400 && idle < 3; ++visit) {
+        (void)renderer.render_rows_within(behind_, {40, 24}, 0.0);
+        idle = renderer.statistics().bricks_produced == 0 ? idle + 1 : 0;
+    }
+    const optics::Image at_rest = renderer.render_rows_within(behind_, {40, 24}, 0.0);
+    for (int visit = 0; visit < 5; ++visit) {
+        EXPECT_EQ(renderer.render_rows_within(behind_, {40, 24}, 0.0).rgba, at_rest.rgba) << visit;
+        EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << visit;
+    }
+    EXPECT_EQ(renderer.render(behind_).rgba, make().render(behind_).rgba);
+}
+
+/// What answering costs, for a clock that only these tests move.
+double overrun(BatchPace& pace, double ms_a_query, double budget_ms, int frames) {
+    double worst = 0.0;
+    for (int frame = 0; frame < frames; ++frame) {
+        double now = 0.0;
+        do {
+            const std::size_t batch = pace.batch(budget_ms - now);
+            now += ms_a_query * double(batch);
+            pace.learn(ms_a_query * double(batch), batch);
+        } while (now < budget_ms);
+        worst = std::max(worst, now - budget_ms);
+    }
+    return worst;
+}
+
+TEST(BatchPaceTest, FrameOverrunsByAFewMillisecondsOnceTheCostIsKnown) {
+    for (const double ms_a_query : {0.01, 0.1, 0.5, 2.0, 20.0}) {
+        for (const double budget_ms : {0.0, 5.0, 30.0}) {
+            BatchPace pace;
+            (void)overrun(pace, ms_a_query, budget_ms, 30);
+            const double least_batch_ms = ms_a_query * double(BatchPace::least);
+            EXPECT_LE(overrun(pace, ms_a_query, budget_ms, 100),
+                      std::max(BatchPace::overrun_ms, least_batch_ms) * 1.01)
+                << ms_a_query << " ms a query, " << budget_ms << " ms for a frame";
+        }
+    }
+}
+
+TEST(BatchPaceTest, CostThatRisesIsLearntInFewBatches) {
+    BatchPace pace;
+    (void)overrun(pace, 0.05, 30.0, 30);
+    EXPECT_EQ(pace.batch(1000.0), BatchPace::most);
+    (void)overrun(pace, 5.0, 30.0, 2);
+    EXPECT_LE(pace.batch(30.0), 8U);
+}
+
+}  // namespace
+}  // namespace cairn::test

@@ -1,0 +1,155 @@
+// A camera that stands still: what it will need when it comes nearer is there before it does.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "app/options/view_options.h"
+#include "app/viewer/viewer.h"
+#include "base/error.h"
+#include "renderer/renderer.h"
+#include "scenes/builtin/builtin.h"
+#include "scenes/snapshot.h"
+#include "tests/support/gl_fixture.h"
+
+namespace cairn::test {
+namespace {
+
+using optics::Image;
+using renderer::Renderer;
+using renderer::TreeOptions;
+using renderer::View;
+
+class PrefetchFiner : public GlTest {
+protected:
+    PrefetchFiner() : scene_(scenes::make_builtin("knot")) {
+        view_.width = 96;
+        view_.height = 72;
+        view_.camera = app::snapped(optics::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0));
+        near_ = view_;
+        near_.camera.eye = glm::mix(view_.camera.target, view_.camera.eye, 0.5);
+    }
+    [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
+        return Renderer(scene_, scenes::take_snapshot(scene_), options);
+    }
+    /// A pool for what the view needs, and so many more.
+    [[nodiscard]] TreeOptions room_for(std::uint64_t more) const {
+        Renderer fresh = make();
+        (void)fresh.render(view_);
+        TreeOptions options;
+        options.brick_pool_bytes = (fresh.statistics().bricks_resident + more) * slot_bytes;
+        return options;
+    }
+    /// @return the bricks that were produced; `calls` counts how often it was asked.
+    static std::uint64_t prefetch_all(Renderer& renderer, double budget_ms, int& calls) {
+        constexpr int most_calls = 20000;
+        std::uint64_t bricks = 0;
+        for (calls = 1; calls < most_calls; ++calls) {
+            const renderer::Prefetched done = renderer.prefetch_finer(budget_ms);
+            bricks += done.bricks;
+            if (!done.more) return bricks;
+        }
+        ADD_FAILURE() << "it never comes to rest";
+        return bricks;
+    }
+
+    static constexpr std::size_t slot_bytes = 18 * 18 * 18 * 5 + 65 * 8;  // the knot has one colour
+    scenes::Scene scene_;
+    View view_;
+    View near_;
+};
+
+TEST_F(PrefetchFiner, ApproachFindsItsBricks) {
+    Renderer plain = make();
+    (void)plain.render_within(view_, 1e9);
+    const optics::Image expected = plain.render_within(near_, 1e9);
+    const std::uint64_t late = plain.statistics().bricks_produced;
+    ASSERT_GT(late, 50U) << "nothing finer is to be seen";
+
+    for (const double budget_ms : {1e9, 1e-3}) {
+        Renderer ahead = make();
+        EXPECT_FALSE(ahead.prefetch_finer(1e9).more) << "nothing has been rendered";
+        (void)ahead.render_within(view_, 1e9);
+        const renderer::FrameStatistics of_frame = ahead.statistics();
+        int calls = 0;
+        const std::uint64_t prefetched = prefetch_all(ahead, budget_ms, calls);
+        EXPECT_EQ(ahead.statistics().passes, of_frame.passes) << "counters are the frame's";
+        EXPECT_EQ(ahead.statistics().bricks_produced, of_frame.bricks_produced);
+        EXPECT_EQ(ahead.render_within(near_, 1e9).rgba, expected.rgba);
+        fmt::print("{} bricks produced without, {} with, {} ahead in {} calls\n", late,
+                   ahead.statistics().bricks_produced, prefetched, calls);
+        EXPECT_EQ(ahead.statistics().bricks_prefetched, prefetched);
+        EXPECT_LE(ahead.statistics().bricks_produced * 4, late);
+    }
+}
+
+TEST_F(PrefetchFiner, StopsWhenThePoolIsFullAndTakesNothingFromTheView) {
+    constexpr std::uint64_t more = 40;
+    Renderer renderer = make(room_for(more));
+    View behind = view_;
+    behind.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
+    (void)renderer.render(behind);  // whose bricks may go
+    optics::Image before;
+    // In bands, as the viewer does it: what any of them used stays.
+    for (int row = 0; row < view_.height; row += 24) {
+        (void)renderer.render_rows_within(view_, {row, 24}, 1e9);
+        ASSERT_TRUE(renderer.statistics().converged);
+    }
+    int calls = 0;
+    const std::uint64_t prefetched = prefetch_all(renderer, 5.0, calls);
+    EXPECT_GE(prefetched, more / 2);
+    EXPECT_LE(prefetched, more + 1);
+    EXPECT_EQ(renderer.prefetch_finer(1e9).bricks, 0U) << "it does not rest";
+    renderer.forget_picture();
+    EXPECT_EQ(renderer.render_within(view_, 1e9).rgba, make().render(view_).rgba);
+    EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << "the view lost bricks";
+    EXPECT_EQ(renderer.statistics().bricks_resident, renderer.statistics().brick_slots);
+}
+
+TEST_F(PrefetchFiner, NothingIsProducedWithoutTimeOrForWhatIsFineEnough) {
+    Renderer renderer = make();
+    (void)renderer.render(view_);
+    EXPECT_EQ(renderer.prefetch_finer(0.0).bricks, 0U);
+    EXPECT_THROW((void)renderer.prefetch_finer(-1.0), Error);
+    Renderer coarse = make({.max_resolution = 64});  // whose finest voxels the view shows already
+    (void)coarse.render(view_);
+    EXPECT_LE(coarse.prefetch_finer(1e9).bricks, 1U) << "but for the root's, which may stand in";
+    EXPECT_FALSE(coarse.prefetch_finer(1e9).more);
+}
+
+TEST_F(PrefetchFiner, ViewerThatStandsStillLooksAheadAndThenRests) {
+    Renderer renderer = make(room_for(60));
+    app::Viewer viewer(renderer, view_, 4.0);
+    double now = 0.0;
+    const auto rest = [&] {
+        int steps = 0;
+        for (; viewer.rest(now) < 1e6 && steps < 5000; ++steps) {
+            now += std::max(viewer.rest(now), 1e-3);
+            viewer.step(now);
+        }
+        EXPECT_LT(steps, 5000) << "it never comes to rest";
+    };
+    rest();
+    EXPECT_TRUE(viewer.converged());
+    const optics::Image expected = make().render(view_);
+    EXPECT_EQ(viewer.growing().image().rgba, expected.rgba);
+    EXPECT_FALSE(renderer.prefetch_finer(1e9).more) << "it rests too early";
+    const std::uint64_t produced = viewer.bricks_produced();
+    renderer.forget_picture();
+    EXPECT_EQ(renderer.render_within(view_, 1e9).rgba, expected.rgba);
+    EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << "the view lost bricks";
+    EXPECT_GT(renderer.statistics().bricks_prefetched, 20U);
+    for (int i = 0; i < 5; ++i)
+        viewer.step(now += 1.0);
+    EXPECT_EQ(viewer.bricks_produced(), produced) << "it does not rest";
+
+    // Who moves does not wait for it.
+    viewer.wheel(3.0);
+    EXPECT_EQ(viewer.rest(now), 0.0);
+    const std::size_t frames = viewer.frame_ms().size();
+    viewer.step(now += 0.01);
+    EXPECT_EQ(viewer.frame_ms().size(), frames + 1);
+    rest();
+    EXPECT_TRUE(viewer.settled());
+}
+
+}  // namespace
+}  // namespace cairn::test

@@ -1,0 +1,337 @@
+// How rays tell what they miss: by a list that may have no room, or by blocks of pixels. Whatever is not told
+// must be asked for again, and the picture be the same.
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "renderer/march/marcher.h"
+#include "renderer/march/tile_blocks.h"
+#include "renderer/produce/fractal_content.h"
+#include "renderer/produce/surface_content.h"
+#include "renderer/renderer.h"
+#include "scenes/builtin/builtin.h"
+#include "scenes/snapshot.h"
+#include "shaders/interop/bindings.h"
+#include "tests/support/gl_fixture.h"
+#include "tests/support/lattice_surface.h"
+#include "tests/support/test_scenes.h"
+#include "tests/support/volume_scenes.h"
+#include "voxelizer/surface/surface.h"
+
+namespace cairn::test {
+namespace {
+
+using optics::Image;
+using renderer::Renderer;
+using renderer::TileQueries;
+using renderer::TreeOptions;
+using renderer::View;
+
+// --- the reduction ---
+
+class TileBlocksTest : public GlTest {
+protected:
+    /// The first few different words of a block, those that were missed before those that were used.
+    static std::vector<std::uint32_t> first_of(const std::vector<std::uint32_t>& reports,
+                                               const glm::ivec2& size, const glm::ivec2& block) {
+        std::vector<std::uint32_t> chosen;
+        for (const bool used : {false, true}) {
+            for (int y = 0; y < TILE_BLOCK_SIDE; ++y)
+                for (int x = 0; x < TILE_BLOCK_SIDE; ++x) {
+                    const glm::ivec2 pixel = block * TILE_BLOCK_SIDE + glm::ivec2(x, y);
+                    if (pixel.x >= size.x || pixel.y >= size.y) continue;
+                    const std::uint32_t word = reports[std::size_t(pixel.y * size.x + pixel.x)];
+                    if (word == TILE_REPORT_NONE || ((word & TILE_REPORT_USED) != 0) != used) continue;
+                    if (std::find(chosen.begin(), chosen.end(), word) != chosen.end()) continue;
+                    if (chosen.size() < TILE_BLOCK_ENTRIES) chosen.push_back(word);
+                }
+        }
+        return chosen;
+    }
+};
+
+TEST_F(TileBlocksTest, EachBlockKeepsTheFirstFourDifferentTiles) {
+    renderer::TileBlocks blocks({});
+    Random random(31);
+    for (const glm::ivec2 size : {glm::ivec2(16, 16), {1, 1}, {70, 45}, {33, 160}, {5, 40}}) {
+        for (const int kinds : {1, 3, 40}) {
+            SCOPED_TRACE(fmt::format("seed 31, {} x {}, {} kinds", size.x, size.y, kinds));
+            blocks.begin_frame(size);
+            blocks.begin_pass();
+            std::vector<std::uint32_t> reports(std::size_t(size.x * size.y));
+            for (std::uint32_t& word : reports) {
+                const auto tile = std::uint32_t(random.between(0, kinds));
+                const int kind = int(random.between(0, 9));
+                word = kind < 3 ? tile : kind < 6 ? TILE_REPORT_USED | tile : TILE_REPORT_NONE;
+            }
+            GLint buffer = 0;
+            glGetIntegeri_v(GL_SHADER_STORAGE_BUFFER_BINDING, SSBO_TILE_REPORTS, &buffer);
+            glNamedBufferSubData(GLuint(buffer), 0, GLsizeiptr(reports.size() * 4), reports.data());
+
+            std::vector<std::uint32_t> queries;
+            std::vector<std::uint32_t> slots;
+            for (int y = 0; y * TILE_BLOCK_SIDE < size.y; ++y)
+                for (int x = 0; x * TILE_BLOCK_SIDE < size.x; ++x)
+                    for (const std::uint32_t word : first_of(reports, size, {x, y}))
+                        if ((word & TILE_REPORT_USED) != 0) {
+                            slots.push_back(word & ~TILE_REPORT_USED);
+                        } else {
+                            queries.push_back(word);
+                        }
+            std::sort(queries.begin(), queries.end());
+            queries.erase(std::unique(queries.begin(), queries.end()), queries.end());
+            const renderer::TileBlocks::Told told = blocks.reduce();
+            EXPECT_EQ(told.queries, queries);
+            EXPECT_EQ(told.slots, slots);
+            blocks.begin_pass();
+            EXPECT_TRUE(blocks.reduce().queries.empty()) << "the last pass was not forgotten";
+        }
+    }
+}
+
+// --- which queries are known where there is no room for all ---
+
+/// A tree of a surface, a view of it from the front, and answers one at a time.
+struct Scenery {
+    Scenery()
+        : shape_(renderer::make_tree_shape(2, 8, 512)),
+          content_(shape_, surface(), {}),
+          pool_(shape_, content_.channels(), 64U << 20U),
+          tree_(shape_, pool_.slot_count(), 8U << 20U, content_.oracle().child_mask({})) {
+        const auto side = float(shape_.resolution());
+        view_.eye = {0.4F * side, 0.6F * side, 1.6F * side, 0.004F};
+        view_.forward = {0.0F, 0.0F, -1.0F, 0.0F};
+        view_.right = {0.6F, 0.0F, 0.0F, 0.0F};
+        view_.up = {0.0F, 0.6F, 0.0F, 0.0F};
+        view_.light = {0.0F, 1.0F, 0.0F, 0.0F};
+        view_.size_shadow = {64, 64, 0, 0};
+        view_.band = {0, 64, 0, 0};
+    }
+    [[nodiscard]] voxelizer::Surface surface() const {
+        const scenes::Scene scene = ball_over_floor();
+        const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
+        return voxelizer::build_surface(scene, snapshot,
+                                        voxelizer::grid_around(snapshot.bounds, shape_.resolution()),
+                                        {.attributes = true});
+    }
+    [[nodiscard]] renderer::Marcher marcher(const renderer::MarchOptions& options) const {
+        return {shape_, content_.has_color(), options, {}};
+    }
+    renderer::PassResult first_pass(renderer::Marcher& marcher) const {
+        marcher.begin_frame(view_, tree_, pool_, false);
+        return marcher.run_pass(round_, tree_, pool_);
+    }
+    /// Whether it is for a brick, and the level. Those that serve() answers first are the largest.
+    [[nodiscard]] std::tuple<bool, int> urgency(std::uint32_t query) const {
+        return {query % 2 == QUERY_BRICK, tree_.tile(query / 2).level};
+    }
+    [[nodiscard]] std::tuple<bool, int> most_urgent(const std::vector<std::uint32_t>& queries) const {
+        std::tuple<bool, int> most{false, -1};
+        for (const std::uint32_t query : queries)
+            most = std::max(most, urgency(query));
+        // Any brick brings a ray to its data.
+        return std::get<0>(most) ? std::tuple<bool, int>{true, 0} : most;
+    }
+    void answer(std::uint32_t query) {
+        const std::uint32_t entry = query / 2;
+        if (query % 2 == QUERY_BRICK) {
+            const std::optional<int> slot = tree_.add_brick(entry);
+            ASSERT_TRUE(slot);
+            const renderer::BrickRequest request{tree_.tile(entry), *slot};
+            (void)content_.producer().produce({&request, 1}, pool_);
+        } else {
+            const std::optional<std::uint32_t> first = tree_.add_children(entry);
+            ASSERT_TRUE(first);
+            const glm::uvec2 mask = content_.oracle().child_mask(tree_.tile(entry));
+            for (int child = 0; child < shape_.child_count(); ++child) {
+                if (!renderer::may_hold(mask, shape_.n, child)) continue;
+                const renderer::Tile tile = renderer::child_of(tree_.tile(entry), shape_.n, child);
+                tree_.set_child_mask(*first + std::uint32_t(child), content_.oracle().child_mask(tile));
+            }
+        }
+        tree_.upload();
+    }
+
+    renderer::TreeShape shape_;
+    renderer::SurfaceContent content_;
+    renderer::BrickPool pool_;
+    renderer::Tree tree_;
+    interop::MarchView view_{};
+    std::uint32_t round_ = 1;
+};
+
+class UrgentQueries : public GlTest {};
+
+TEST_F(UrgentQueries, MostUrgentIsKnownThoughThereIsRoomForOneAlone) {
+    Scenery scenery;
+    renderer::Marcher all = scenery.marcher({});
+    renderer::Marcher few = scenery.marcher({.query_capacity = 1});
+    renderer::Marcher blocks = scenery.marcher({.tile_queries = TileQueries::blocks});
+    Random random(12);
+    int mixed = 0;
+    for (int step = 0; step < 150; ++step) {
+        SCOPED_TRACE(fmt::format("seed 12, step {}", step));
+        ++scenery.round_;
+        const renderer::PassResult asked = scenery.first_pass(all);
+        if (asked.done()) break;
+        const auto most = scenery.most_urgent(asked.queries);
+        const auto least = scenery.urgency(*std::min_element(
+            asked.queries.begin(), asked.queries.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return scenery.urgency(a) < scenery.urgency(b); }));
+        mixed += !std::get<0>(least) && least != most ? 1 : 0;
+        for (renderer::Marcher* lossy : {&few, &blocks}) {
+            const renderer::PassResult told = scenery.first_pass(*lossy);
+            EXPECT_EQ(scenery.most_urgent(told.queries), most);
+            for (const std::uint32_t query : told.queries)
+                EXPECT_EQ(std::count(asked.queries.begin(), asked.queries.end(), query), 1) << query;
+            EXPECT_EQ(told.waiting_primary, asked.waiting_primary);
+        }
+        scenery.tree_.begin_round(++scenery.round_, asked.brick_stamps);
+        const auto count = std::int64_t(asked.queries.size());
+        scenery.answer(asked.queries[std::size_t(random.between(0, count - 1))]);
+    }
+    EXPECT_GT(mixed, 20) << "hardly ever was one of them more urgent than another";
+}
+
+// --- whole pictures ---
+
+class TileQueriesTest : public GlTest {
+protected:
+    TileQueriesTest() : scene_(scenes::make_builtin("knot")), snapshot_(scenes::take_snapshot(scene_)) {
+        view_.width = 101;
+        view_.height = 70;
+        view_.pixel_error = 0.3;
+        view_.camera = optics::framing_camera(snapshot_.bounds, 1.4);
+    }
+    [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
+        return Renderer(scene_, snapshot_, options);
+    }
+    [[nodiscard]] static TreeOptions with_blocks(TreeOptions options = {}) {
+        options.tile_queries = TileQueries::blocks;
+        return options;
+    }
+    static constexpr std::size_t slot_bytes = 18 * 18 * 18 * 5 + 65 * 8;
+    static constexpr std::size_t few_nodes = std::size_t(8) * 64 * 16;
+
+    scenes::Scene scene_;
+    scenes::Snapshot snapshot_;
+    View view_;
+};
+
+TEST_F(TileQueriesTest, BlocksTellEnoughForTheSamePicture) {
+    for (const int n : {2, 4}) {
+        SCOPED_TRACE(n);
+        const TreeOptions options{.n = n, .brick_pool_bytes = 64U << 20U};
+        Renderer list = make(options);
+        Renderer blocks = make(with_blocks(options));
+        const optics::Image expected = list.render(view_);
+        EXPECT_EQ(blocks.render(view_).rgba, expected.rgba);
+        const renderer::FrameStatistics& of_list = list.statistics();
+        const renderer::FrameStatistics& of_blocks = blocks.statistics();
+        EXPECT_EQ(of_blocks.bricks_produced, of_list.bricks_produced) << "nothing had to go";
+        EXPECT_GE(of_blocks.passes, of_list.passes);
+        EXPECT_GT(of_blocks.query_bytes, 0U);
+        const auto bytes_a_pass = [](const renderer::FrameStatistics& of) {
+            return of.query_bytes / std::uint64_t(of.passes);
+        };
+        EXPECT_LT(bytes_a_pass(of_blocks), bytes_a_pass(of_list));
+        EXPECT_GE(bytes_a_pass(of_list), of_list.brick_slots * 4) << "a stamp for each slot";
+        blocks.forget_picture();
+        EXPECT_EQ(blocks.render_rows(view_, {16, 40}).rgba,
+                  std::vector<std::uint8_t>(expected.rgba.begin() + 16 * view_.width * 4,
+                                            expected.rgba.begin() + 56 * view_.width * 4));
+        EXPECT_EQ(blocks.statistics().bricks_produced, 0U);
+    }
+}
+
+TEST_F(TileQueriesTest, BlocksSufficeForPoolsFarTooSmall) {
+    Renderer whole = make();
+    const optics::Image expected = whole.render(view_);
+    for (const double share : {0.3, 0.02}) {
+        TreeOptions options = with_blocks();
+        options.brick_pool_bytes =
+            std::size_t(double(whole.statistics().bricks_produced) * share) * slot_bytes;
+        options.node_pool_bytes = few_nodes;
+        Renderer tight = make(options);
+        EXPECT_EQ(tight.render(view_).rgba, expected.rgba) << share;
+        EXPECT_GT(tight.statistics().bricks_evicted, 0U);
+        EXPECT_GT(tight.statistics().nodes_evicted, 0U);
+    }
+}
+
+TEST_F(TileQueriesTest, BlocksServeVolumesAndConstantTiles) {
+    const scenes::Volume volume = blobs(glm::ivec3(48), 3);
+    View view = glowing_view(volume.bounds(), 90, 50);
+    view.light.ambient = 0.3F;
+    view.shadow = renderer::Shadow::hard;
+    for (const std::size_t bytes : {std::size_t(8) << 20U, std::size_t(1) << 18U}) {
+        TreeOptions options{.n = 2, .m = 8, .brick_pool_bytes = bytes};
+        Renderer list(volume, ramp(20.0), options);
+        const optics::Image expected = list.render(view);
+        Renderer blocks(volume, ramp(20.0), with_blocks(options));
+        EXPECT_EQ(blocks.render(view).rgba, expected.rgba) << bytes;
+    }
+}
+
+TEST_F(TileQueriesTest, BlocksAndFewQueriesServeWindows) {
+    TreeOptions options{.n = 2, .m = 16, .brick_pool_bytes = 8U << 20U};
+    options.max_level = 40;
+    const auto make_deep = [](const TreeOptions& deep) {
+        return Renderer(std::make_unique<renderer::FractalContent>(renderer::tree_shape_of(deep)), deep);
+    };
+    View view;
+    view.width = 48;
+    view.height = 36;
+    view.anchor = renderer::Tile{30, glm::i64vec3(std::int64_t(1) << 29)};
+    view.camera.eye = {0.71, 0.53, 0.62};
+    view.camera.target = {0.02, 0.01, 0.03};
+    view.light.towards = {0.5, 0.9, 0.35};
+    const optics::Image expected = make_deep(options).render(view);
+    EXPECT_EQ(make_deep(with_blocks(options)).render(view).rgba, expected.rgba);
+    for (const int capacity : {1, 5}) {
+        TreeOptions few = options;
+        few.query_capacity = capacity;
+        few.node_pool_bytes = std::size_t(16) << 10U;
+        EXPECT_EQ(make_deep(few).render(view).rgba, expected.rgba) << capacity;
+    }
+}
+
+TEST_F(TileQueriesTest, FewQueriesAndFewNodesEndTogether) {
+    // One path of nodes from the root to a leaf and a block more, and three bricks.
+    const TreeOptions enough{.n = 2, .m = 8, .max_resolution = 1024, .brick_pool_bytes = 32U << 20U};
+    TreeOptions few = enough;
+    few.node_pool_bytes = std::size_t(9) * 8 * 16;
+    few.brick_pool_bytes = std::size_t(3) * (1000 * 5 + 9 * 8);
+    view_.width = 32;
+    view_.height = 24;
+    view_.pixel_error = 0.5;
+    const optics::Image expected = make(enough).render(view_);
+    for (const int capacity : {1, 2, 7}) {
+        few.query_capacity = capacity;
+        Renderer renderer = make(few);
+        int passes = 0;
+        EXPECT_EQ(renderer.render(view_, [&](double) { ASSERT_LT(++passes, 20000) << "no end"; }).rgba,
+                  expected.rgba)
+            << capacity;
+        EXPECT_GT(renderer.statistics().nodes_evicted, 0U) << capacity;
+        fmt::print("{} a pass: {} passes, {} bricks, {} nodes evicted\n", capacity,
+                   renderer.statistics().passes, renderer.statistics().bricks_produced,
+                   renderer.statistics().nodes_evicted);
+    }
+}
+
+TEST_F(TileQueriesTest, FramesWithinABudgetNeedLists) {
+    Renderer blocks = make(with_blocks());
+    EXPECT_THROW((void)blocks.render_within(view_, 10.0), Error);
+    EXPECT_THROW((void)blocks.render_rows_within(view_, {0, 8}, 10.0), Error);
+    EXPECT_THROW((void)blocks.prefetch(view_, 10.0), Error);
+    EXPECT_THROW((void)blocks.prefetch_finer(10.0), Error);
+    EXPECT_EQ(blocks.render(view_).rgba, make().render(view_).rgba);
+}
+
+}  // namespace
+}  // namespace cairn::test

@@ -1,0 +1,223 @@
+// What makes rays faster changes no bit of the picture: ways down the tree, late starts, early ends.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "renderer/renderer.h"
+#include "scenes/builtin/builtin.h"
+#include "scenes/snapshot.h"
+#include "tests/support/gl_fixture.h"
+#include "tests/support/test_scenes.h"
+
+namespace cairn::test {
+namespace {
+
+using optics::Image;
+using renderer::LevelOfDetail;
+using renderer::Renderer;
+using renderer::Traversal;
+using renderer::TreeOptions;
+using renderer::View;
+
+Renderer make_renderer(const scenes::Scene& scene, const TreeOptions& options) {
+    return Renderer(scene, scenes::take_snapshot(scene), options);
+}
+
+/// How many pixels differ, and which is the first.
+std::string difference(const optics::Image& a, const optics::Image& b) {
+    std::size_t count = 0;
+    std::string first;
+    for (std::size_t pixel = 0; pixel * 4 < a.rgba.size(); ++pixel) {
+        const auto* pa = &a.rgba[pixel * 4];
+        const auto* pb = &b.rgba[pixel * 4];
+        if (std::equal(pa, pa + 4, pb)) continue;
+        if (count++ == 0) {
+            first = fmt::format("first ({}, {}): {} {} {} {} against {} {} {} {}",
+                                pixel % std::size_t(a.width), pixel / std::size_t(a.width), pa[0], pa[1],
+                                pa[2], pa[3], pb[0], pb[1], pb[2], pb[3]);
+        }
+    }
+    return count == 0 ? "" : fmt::format("{} pixels differ, {}", count, first);
+}
+
+/// Needles and wires, thinner than a voxel, in all directions, some of them along the axes.
+scenes::Scene needles() {
+    std::mt19937 rng(11);
+    auto unit = [&] { return float(rng() >> 8) * 0x1p-24F; };
+    std::vector<glm::vec3> corners;
+    for (int i = 0; i < 60; ++i) {
+        const glm::vec3 from(unit(), unit(), unit());
+        glm::vec3 to(unit(), unit(), unit());
+        if (i % 4 == 0) to = from + glm::vec3(i % 3 == 0, i % 3 == 1, i % 3 == 2) * (unit() - 0.5F);
+        const glm::vec3 aside = 1e-3F * (glm::vec3(unit(), unit(), unit()) - 0.5F);
+        corners.insert(corners.end(), {from, to, from + aside});
+    }
+    return triangles(corners);
+}
+
+/// Views that are hard on starts and ends: from inside, along axes through voxel planes, from very far,
+/// through a narrow or a wide lens.
+std::vector<View> hard_views(const scenes::Scene& scene) {
+    const scenes::Bounds bounds = scenes::take_snapshot(scene).bounds;
+    const glm::dvec3 middle = 0.5 * (glm::dvec3(bounds.low) + glm::dvec3(bounds.high));
+    const double size = glm::length(glm::dvec3(bounds.high) - glm::dvec3(bounds.low));
+    View view;
+    view.width = 101;
+    view.height = 67;
+    view.pixel_error = 0.7;
+    view.camera = optics::framing_camera(bounds, double(view.width) / view.height);
+    std::vector<View> views{view};
+    auto add = [&](const glm::dvec3& eye, const glm::dvec3& target, double yfov) {
+        View other = view;
+        other.camera.eye = eye;
+        other.camera.target = target;
+        other.camera.yfov = yfov;
+        views.push_back(other);
+    };
+    add(middle, middle + glm::dvec3(1.0, 0.0, 0.0), 1.0);
+    add(middle + glm::dvec3(0.0, 0.0, size), middle, 0.6);
+    add(middle - glm::dvec3(2.0 * size, 0.0, 0.0), middle, 0.3);
+    add(middle + glm::dvec3(300.0, 200.0, 500.0) * size, middle, 0.002);
+    add(middle + glm::dvec3(0.1, 0.2, 0.05) * size, middle, 2.6);
+    std::mt19937 rng(5);
+    auto unit = [&] { return double(rng() >> 8) * 0x1p-24; };
+    for (int i = 0; i < 4; ++i) {
+        const glm::dvec3 eye = middle + (glm::dvec3(unit(), unit(), unit()) - 0.5) * 1.2 * size;
+        add(eye, middle + (glm::dvec3(unit(), unit(), unit()) - 0.5) * 0.5 * size, 0.2 + unit());
+    }
+    views.back().light.positional = true;
+    views.back().light.position = middle + glm::dvec3(0.2, 0.9, 0.1) * size;
+    views.front().light.towards = {0.0, 1.0, 0.0};
+    views[1].shadow_pixel_error = 4.0;
+    views[2].shadow_pixel_error = 16.0;
+    return views;
+}
+
+struct Shape {
+    int n, m;
+    LevelOfDetail level_of_detail;
+};
+
+class Shapes : public GlTest, public ::testing::WithParamInterface<Shape> {
+protected:
+    static TreeOptions options() {
+        return {.n = GetParam().n,
+                .m = GetParam().m,
+                .max_resolution = 1024,
+                .mips = GetParam().level_of_detail == LevelOfDetail::blended,
+                .brick_pool_bytes = 48U << 20U};
+    }
+    static std::vector<View> views(const scenes::Scene& scene) {
+        std::vector<View> views = hard_views(scene);
+        for (View& view : views)
+            view.level_of_detail = GetParam().level_of_detail;
+        return views;
+    }
+};
+
+TEST_P(Shapes, EveryTraversalGivesThePictureOfRestarts) {
+    const scenes::Scene scene = needles();
+    TreeOptions with = options();
+    with.traversal = Traversal::restart;
+    Renderer expected = make_renderer(scene, with);
+    with.traversal = Traversal::stackless;
+    Renderer stackless = make_renderer(scene, with);
+    with.traversal = Traversal::mini_stack;
+    Renderer mini_stack = make_renderer(scene, with);
+    const std::vector<View> views = Shapes::views(scene);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const optics::Image image = expected.render(views[i]);
+        EXPECT_EQ(difference(stackless.render(views[i]), image), "") << "stackless, view " << i;
+        EXPECT_EQ(difference(mini_stack.render(views[i]), image), "") << "mini-stack, view " << i;
+        if (i != 0) continue;
+        // Again with rays that also ask for the bricks of the nodes that they pass.
+        EXPECT_EQ(difference(stackless.render_within(views[i], 1e9), image), "") << "stackless";
+        EXPECT_EQ(difference(mini_stack.render_within(views[i], 1e9), image), "") << "mini-stack";
+    }
+}
+
+TEST_P(Shapes, LateStartsAndEarlyEndsChangeNothing) {
+    for (const scenes::Scene& scene : {needles(), ball_over_floor()}) {
+        TreeOptions with = options();
+        with.block_starts = false;
+        Renderer plain = make_renderer(scene, with);
+        with.block_starts = true;
+        Renderer ours = make_renderer(scene, with);
+        const std::vector<View> views = Shapes::views(scene);
+        std::size_t seen = 0;
+        for (std::size_t i = 0; i < views.size(); ++i) {
+            const optics::Image expected = plain.render(views[i]);
+            // Cold, then with all that the view shows in the tree, where starts are latest.
+            EXPECT_EQ(difference(ours.render(views[i]), expected), "") << "cold, view " << i;
+            EXPECT_EQ(difference(ours.render(views[i]), expected), "") << "view " << i;
+            for (std::size_t k = 3; k < expected.rgba.size(); k += 4)
+                seen += expected.rgba[k] != 0 ? 1 : 0;
+        }
+        EXPECT_GT(seen, 5000U) << "the views show too little to prove anything";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    NAndM, Shapes,
+    ::testing::Values(Shape{4, 16, LevelOfDetail::nearest}, Shape{4, 8, LevelOfDetail::nearest},
+                      Shape{2, 8, LevelOfDetail::nearest}, Shape{2, 32, LevelOfDetail::nearest},
+                      Shape{4, 16, LevelOfDetail::blended}, Shape{4, 8, LevelOfDetail::blended},
+                      Shape{2, 8, LevelOfDetail::blended}, Shape{8, 8, LevelOfDetail::blended}),
+    [](const auto& shape) {
+        return fmt::format("N{}M{}{}", shape.param.n, shape.param.m,
+                           shape.param.level_of_detail == LevelOfDetail::blended ? "Blended" : "");
+    });
+
+class TraversalTest : public GlTest {};
+
+TEST_F(TraversalTest, MoreLevelsThanTheMiniStackHolds) {
+    const scenes::Scene scene = needles();
+    View view = hard_views(scene)[0];
+    view.width = view.height = 48;
+    view.camera.yfov = 0.01;
+    view.camera.target = view.camera.target + glm::dvec3(0.02, 0.01, 0.0);
+    view.pixel_error = 0.2;
+    const TreeOptions deep{.n = 2, .m = 8, .max_resolution = 1 << 15, .traversal = Traversal::restart};
+    TreeOptions with = deep;
+    with.traversal = Traversal::mini_stack;
+    const optics::Image expected = make_renderer(scene, deep).render(view);
+    EXPECT_EQ(difference(make_renderer(scene, with).render(view), expected), "");
+}
+
+TEST_F(TraversalTest, RowsAloneStartAsInTheWholePicture) {
+    const scenes::Scene scene = scenes::make_builtin("knot");
+    View view = hard_views(scene)[0];
+    Renderer renderer = make_renderer(scene, {});
+    const optics::Image whole = renderer.render(view);
+    for (const renderer::Rows rows : {renderer::Rows{0, 5}, renderer::Rows{13, 40}, renderer::Rows{66, 1}}) {
+        const optics::Image part = renderer.render_rows(view, rows);
+        const auto* first = whole.rgba.data() + std::size_t(rows.first) * std::size_t(view.width) * 4;
+        EXPECT_TRUE(std::equal(part.rgba.begin(), part.rgba.end(), first)) << "rows from " << rows.first;
+    }
+}
+
+TEST_F(TraversalTest, CoarserShadowRaysShadeAlmostTheSame) {
+    const scenes::Scene scene = ball_over_floor();
+    View view = hard_views(scene)[0];
+    view.pixel_error = 0.4;
+    view.light.towards = {0.8, 0.5, 0.1};
+    Renderer fine = make_renderer(scene, {});
+    const optics::Image expected = fine.render(view);
+    view.shadow_pixel_error = 4.0;
+    Renderer coarse = make_renderer(scene, {});
+    const optics::Image ours = coarse.render(view);
+    std::size_t different = 0;
+    for (std::size_t k = 0; k < ours.rgba.size(); k += 4)
+        different += std::abs(int(ours.rgba[k]) - int(expected.rgba[k])) > 32 ? 1 : 0;
+    EXPECT_GT(different, 0U) << "shadow rays meet the same voxels";
+    EXPECT_LT(different, ours.rgba.size() / 4 / 30);
+    view.shadow_pixel_error = 0.0;
+    EXPECT_THROW((void)coarse.render(view), Error);
+}
+
+}  // namespace
+}  // namespace cairn::test

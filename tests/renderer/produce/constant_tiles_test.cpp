@@ -1,0 +1,267 @@
+// Tiles that hold one value keep no brick, and tiles that nothing finer adds to are not subdivided
+// (Crassin et al. 2008, sections 4.2 and 6.1); the picture is the same as if they did and were.
+#include <cmath>
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "renderer/pool/tree.h"
+#include "renderer/renderer.h"
+#include "tests/support/box_content.h"
+#include "tests/support/gl_fixture.h"
+
+namespace cairn::test {
+namespace {
+
+using optics::Image;
+using renderer::Renderer;
+using renderer::TreeOptions;
+using renderer::TreeShape;
+using renderer::View;
+
+struct Boxed {
+    Renderer renderer;
+    BoxContent* content;
+};
+
+Boxed make_boxed(const TreeOptions& tree, const BoxOptions& options) {
+    auto made = std::make_unique<BoxContent>(tree_shape_of(tree), options);
+    BoxContent* const content = made.get();
+    return {Renderer(std::move(made), tree), content};
+}
+
+View view_of_box(double pixel_error) {
+    View view;
+    view.width = 72;
+    view.height = 54;
+    view.camera.eye = {1.7, 1.1, 2.1};
+    view.camera.target = {0.5, 0.4, 0.5};
+    view.pixel_error = pixel_error;
+    view.light.towards = {0.3, 1.0, 0.2};
+    return view;
+}
+
+struct Shape {
+    int n, m, max_resolution, margin;
+};
+
+class ConstantTiles : public GlTest, public ::testing::WithParamInterface<Shape> {
+protected:
+    [[nodiscard]] static TreeOptions tree() {
+        return {.n = GetParam().n, .m = GetParam().m, .max_resolution = GetParam().max_resolution};
+    }
+    [[nodiscard]] static BoxOptions box(bool constant) {
+        return {.n = GetParam().n, .margin = GetParam().margin, .constant = constant};
+    }
+};
+
+glm::dvec3 direction_of(const View& view, int x, int y) {
+    const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
+    const glm::dvec3 up = glm::cross(right, forward);
+    const double half = std::tan(0.5 * view.camera.yfov);
+    const double px = ((x + 0.5) / view.width * 2.0 - 1.0) * half * view.width / view.height;
+    const double py = ((y + 0.5) / view.height * 2.0 - 1.0) * half;
+    return glm::normalize(forward + px * right - py * up);
+}
+
+/// How long a ray is in the cube [low, high]^3 of the world; below 0: it passes beside it.
+double length_in_cube(const View& view, const glm::dvec3& direction, double low, double high) {
+    const glm::dvec3 a = (low - view.camera.eye) / direction;
+    const glm::dvec3 b = (high - view.camera.eye) / direction;
+    const glm::dvec3 near = glm::min(a, b);
+    const glm::dvec3 far = glm::max(a, b);
+    return std::min({far.x, far.y, far.z}) - std::max({near.x, near.y, near.z});
+}
+
+int srgb(double linear) {
+    const double c = std::min(linear, 1.0);
+    return int(std::lround(255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055)));
+}
+
+TEST_P(ConstantTiles, HoldNoBrickAndCoverAsTheirBricksWould) {
+    View view = view_of_box(1e-6);
+    view.shadow = renderer::Shadow::none;
+    Boxed with = make_boxed(tree(), box(true));
+    Boxed without = make_boxed(tree(), box(false));
+    const optics::Image ours = with.renderer.render(view);
+    const optics::Image bricks = without.renderer.render(view);
+    EXPECT_GT(with.renderer.statistics().constant_tiles, 0U);
+    EXPECT_EQ(without.renderer.statistics().constant_tiles, 0U);
+    EXPECT_EQ(with.renderer.statistics().bricks_resident + with.renderer.statistics().constant_tiles,
+              without.renderer.statistics().bricks_resident);
+    std::size_t half_covered = 0;
+    for (std::size_t i = 3; i < ours.rgba.size(); i += 4) {
+        ASSERT_LE(std::abs(int(ours.rgba[i]) - int(bricks.rgba[i])), 1)
+            << "coverage of pixel (" << i / 4 % 72 << ", " << i / 4 / 72 << ")";
+        half_covered += ours.rgba[i] > 20 && ours.rgba[i] < 235 ? 1 : 0;
+    }
+    EXPECT_GT(half_covered, 20U) << "nothing shines through: coverage proves little";
+    (void)with.renderer.render(view);
+    EXPECT_EQ(with.renderer.statistics().bricks_produced, 0U) << "a constant tile was asked for again";
+}
+
+TEST_P(ConstantTiles, HaveTheColourOfTheirMean) {
+    View view = view_of_box(1e-6);
+    view.shadow = renderer::Shadow::none;
+    view.light.ambient = 1.0F;
+    const optics::Image ours = make_boxed(tree(), box(true)).renderer.render(view);
+    const double margin = double(GetParam().margin) / GetParam().n;
+    const double voxel =
+        1.0 / renderer::make_tree_shape(GetParam().n, GetParam().m, GetParam().max_resolution).resolution();
+    int judged = 0;
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const glm::dvec3 direction = direction_of(view, x, y);
+            // 64 voxels of 2 * 2 / 255 cover all: nothing of the floor is seen.
+            if (length_in_cube(view, direction, margin, 1.0 - margin) < 66.0 * voxel) continue;
+            const std::size_t pixel = std::size_t(y * view.width + x) * 4;
+            // Without normals the fog faces the viewer; bricks around the constant tiles hold rounded ones,
+            // which do not.
+            const double least = 0.75 + 0.25 * std::min(-direction.y, 0.5) - 0.26;
+            const double most = 1.0;
+            for (int k = 0; k < 3; ++k) {
+                const double root = double(BoxContent::fog[k]) / BoxContent::fog.a;
+                ASSERT_GE(int(ours.rgba[pixel + std::size_t(k)]), srgb(root * root * least) - 1)
+                    << x << ' ' << y;
+                ASSERT_LE(int(ours.rgba[pixel + std::size_t(k)]), srgb(root * root * most) + 1)
+                    << x << ' ' << y;
+            }
+            ASSERT_EQ(ours.rgba[pixel + 3], 255) << x << ' ' << y;
+            ++judged;
+        }
+    }
+    EXPECT_GT(judged, 50);
+}
+
+TEST_P(ConstantTiles, CastTheShadowsThatTheirBricksWould) {
+    const View view = view_of_box(1e-6);
+    const optics::Image ours = make_boxed(tree(), box(true)).renderer.render(view);
+    const optics::Image bricks = make_boxed(tree(), box(false)).renderer.render(view);
+    View unlit = view;
+    unlit.shadow = renderer::Shadow::none;
+    const optics::Image without_shadow = make_boxed(tree(), box(true)).renderer.render(unlit);
+    const double margin = double(GetParam().margin) / GetParam().n;
+    int in_shadow = 0;
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const std::size_t pixel = std::size_t(y * view.width + x) * 4;
+            if (length_in_cube(view, direction_of(view, x, y), margin - 0.01, 1.01 - margin) > 0.0) continue;
+            ASSERT_LE(std::abs(int(ours.rgba[pixel]) - int(bricks.rgba[pixel])), 1)
+                << "floor at pixel (" << x << ", " << y << ")";
+            in_shadow += ours.rgba[pixel] + 10 < without_shadow.rgba[pixel] ? 1 : 0;
+        }
+    }
+    EXPECT_GT(in_shadow, 20);
+}
+
+TEST_P(ConstantTiles, PictureDoesNotDependOnPoolsNorOnTheFramesBefore) {
+    const View view = view_of_box(1e-6);
+    const optics::Image expected = make_boxed(tree(), box(true)).renderer.render(view);
+    TreeOptions tight = tree();
+    const std::size_t side = std::size_t(tight.m) + 2;
+    tight.brick_pool_bytes = 2 * side * side * side * 9;
+    tight.node_pool_bytes = std::size_t(tight.n * tight.n * tight.n) * 20 * 5;
+    Boxed small = make_boxed(tight, box(true));
+    View little = view;
+    little.width = 24;
+    little.height = 18;
+    const optics::Image small_picture = small.renderer.render(little);
+    EXPECT_EQ(small_picture.rgba, make_boxed(tree(), box(true)).renderer.render(little).rgba);
+    EXPECT_LE(small.renderer.statistics().node_pool_bytes, tight.node_pool_bytes);
+
+    Boxed used = make_boxed(tree(), box(true));
+    (void)used.renderer.render(view_of_box(16.0));
+    EXPECT_EQ(used.renderer.render(view).rgba, expected.rgba);
+    Boxed hasty = make_boxed(tree(), box(true));
+    for (int frame = 0; frame < 2000; ++frame) {
+        const optics::Image image = hasty.renderer.render_within(view, 20.0);
+        if (!hasty.renderer.statistics().converged) continue;
+        EXPECT_EQ(image.rgba, expected.rgba);
+        return;
+    }
+    FAIL() << "2000 frames did not end with a whole picture";
+}
+
+TEST_P(ConstantTiles, TilesOfLowFrequencyAreShownAsTheyAreAtEveryDistance) {
+    BoxOptions options = box(true);
+    options.low_frequency = true;
+    const View view = view_of_box(1e-6);
+    Boxed fresh = make_boxed(tree(), options);
+    const optics::Image expected = fresh.renderer.render(view);
+    const TreeShape shape = renderer::make_tree_shape(GetParam().n, GetParam().m, GetParam().max_resolution);
+    int deepest_low = 0;
+    int deepest_high = 0;
+    for (const renderer::Tile& tile : fresh.content->produced()) {
+        // Of the tile of level 1 that it is in: those alone are called final.
+        const std::int64_t above =
+            tile.position.x / std::max(shape.tiles_across(std::max(tile.level - 1, 0)), 1);
+        int& deepest = tile.level >= 1 && above < shape.n / 2 ? deepest_low : deepest_high;
+        deepest = std::max(deepest, tile.level);
+    }
+    EXPECT_EQ(deepest_low, 1);
+    EXPECT_EQ(deepest_high, shape.max_level);
+
+    Boxed used = make_boxed(tree(), options);
+    (void)used.renderer.render(view_of_box(64.0));
+    EXPECT_EQ(used.renderer.render(view).rgba, expected.rgba) << "what was looked at before shows";
+    TreeOptions tight = tree();
+    const std::size_t side = std::size_t(tight.m) + 2;
+    tight.brick_pool_bytes = 2 * side * side * side * 9;
+    View little = view;
+    little.width = 24;
+    little.height = 18;
+    EXPECT_EQ(make_boxed(tight, options).renderer.render(little).rgba,
+              make_boxed(tree(), options).renderer.render(little).rgba);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, ConstantTiles,
+                         ::testing::Values(Shape{4, 8, 128, 1}, Shape{3, 27, 243, 1}, Shape{8, 8, 512, 2}),
+                         [](const auto& shape) {
+                             return fmt::format("N{}M{}", shape.param.n, shape.param.m);
+                         });
+
+class TreeFlags : public GlTest {};
+
+TEST_F(TreeFlags, ConstantTileGivesItsSlotBackAndIsNeverAskedForAgain) {
+    const TreeShape shape = renderer::make_tree_shape(2, 8, 64);
+    renderer::Tree tree(shape, 2, 1U << 16U, glm::uvec2(0xFF, 0), true);
+    tree.begin_round(1, {0, 0});
+    const std::uint32_t first = tree.add_children(0).value();
+    tree.begin_round(2, {0, 0});
+    ASSERT_TRUE(tree.add_brick(first));
+    ASSERT_TRUE(tree.add_brick(first + 1));
+    EXPECT_FALSE(tree.add_brick(first + 2)) << "a third slot of two";
+    tree.set_constant(first, {1, 2, 3, 4});
+    EXPECT_FALSE(tree.slot(first));
+    EXPECT_EQ(tree.bricks_resident(), 1);
+    EXPECT_TRUE(tree.add_brick(first + 2));
+    tree.begin_round(3, {0, 0});
+    EXPECT_FALSE(tree.wants_brick(first));
+    EXPECT_TRUE(tree.wants_children(first)) << "one value at its own level says nothing of finer ones";
+    EXPECT_EQ(tree.node(first).brick, NODE_CONSTANT);
+    tree.set_constant(first + 3, glm::u8vec4(0));
+    EXPECT_EQ(tree.node(first + 3).brick, NODE_CONSTANT | NODE_EMPTY);
+}
+
+TEST_F(TreeFlags, WhatIsKnownOfATileOutlivesItsBrick) {
+    const TreeShape shape = renderer::make_tree_shape(2, 8, 64);
+    renderer::Tree tree(shape, 1, 1U << 16U, glm::uvec2(0xFF, 0));
+    tree.begin_round(1, {0});
+    const std::uint32_t first = tree.add_children(0).value();
+    tree.begin_round(2, {0});
+    ASSERT_TRUE(tree.add_brick(first));
+    tree.set_produced(first);
+    tree.set_final(first);
+    EXPECT_FALSE(tree.wants_children(first));
+    tree.begin_round(3, {0});
+    ASSERT_TRUE(tree.add_brick(first + 1)) << "the only slot changes hands";
+    EXPECT_FALSE(tree.slot(first));
+    EXPECT_TRUE(tree.was_produced(first));
+    EXPECT_TRUE(tree.wants_brick(first));
+    EXPECT_FALSE(tree.wants_children(first));
+}
+
+}  // namespace
+}  // namespace cairn::test

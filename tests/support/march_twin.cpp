@@ -1,0 +1,321 @@
+#include "tests/support/march_twin.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "reference/exact_voxels.h"
+#include "scenes/snapshot.h"
+#include "voxelizer/surface/surface.h"
+
+namespace cairn::test {
+namespace {
+
+using glm::dvec3;
+using glm::ivec3;
+
+/// Sums over the 4^3 finer voxels of one voxel.
+struct Gathered {
+    bool fine[4][4][4] = {};
+    dvec3 normal{0.0};
+    glm::dmat3 moments{0.0};
+    double weight = 0.0;
+};
+
+double coverage_of(const Gathered& g) {
+    int most = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        int columns = 0;
+        for (int i = 0; i < 4; ++i) {
+            for (int j = 0; j < 4; ++j) {
+                bool any = false;
+                for (int k = 0; k < 4; ++k) {
+                    any |= axis == 0 ? g.fine[k][i][j] : axis == 1 ? g.fine[i][k][j] : g.fine[i][j][k];
+                }
+                columns += any ? 1 : 0;
+            }
+        }
+        most = std::max(most, columns);
+    }
+    return std::round(most / 16.0 * 255.0) / 255.0;  // R8
+}
+
+/// By the octahedral map, in whole steps.
+dvec3 rounded_normal(const dvec3& n, double steps) {
+    const glm::dvec2 flat = glm::dvec2(n) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+    const auto folded = [](const glm::dvec2& e) {
+        return (1.0 - glm::abs(glm::dvec2(e.y, e.x))) *
+               glm::dvec2(e.x < 0.0 ? -1.0 : 1.0, e.y < 0.0 ? -1.0 : 1.0);
+    };
+    const glm::dvec2 e = glm::round((n.z < 0.0 ? folded(flat) : flat) * steps) / steps;
+    const double z = 1.0 - std::abs(e.x) - std::abs(e.y);
+    return glm::normalize(dvec3(z < 0.0 ? folded(e) : e, z));
+}
+
+/// The direction in which normals spread most: by power iteration as the shader does it, since where several
+/// are as good its choice is the definition.
+dvec3 main_direction(const glm::dmat3& covariance) {
+    int most = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        if (covariance[axis][axis] > covariance[most][most]) most = axis;
+    dvec3 u = covariance[most];
+    for (int i = 0; i < 8; ++i)
+        u = covariance * (u / std::max(glm::length(u), 1e-12));
+    return u / std::max(glm::length(u), 1e-12);
+}
+
+/// Two that have the mean of all and lie where they spread most.
+TwoNormals two_normals(const Gathered& g) {
+    if (glm::length(g.normal) + glm::length(g.moments[0]) + glm::length(g.moments[1]) == 0.0) return {};
+    const dvec3 mean = g.normal / g.weight;
+    const dvec3 u = main_direction(g.moments / g.weight - glm::outerProduct(mean, mean));
+    const double along = glm::dot(mean, u);
+    const double half = std::sqrt(std::max(along * along + 1.0 - glm::dot(mean, mean), 0.0));
+    TwoNormals two{true, mean, mean, 0.0};
+    const double share = std::min(half - along, half + along) / std::max(2.0 * half, 1e-6);
+    if (half >= 0.12 && 6.0 * share >= 0.5) {
+        two.first = mean + (half - along) * u;
+        two.second = mean - (half + along) * u;
+        if (along < 0.0) std::swap(two.first, two.second);
+        two.share = std::round(6.0 * share) / 6.0;
+    }
+    two.first = rounded_normal(two.first, 255.0);
+    two.second = rounded_normal(two.second, 31.0);
+    return two;
+}
+
+/// Adds one triangle's exact finer voxels to the voxels that hold them.
+void gather(const voxelizer::Surface& one, int fine_level, int side, std::vector<Gathered>& all) {
+    const voxelizer::SurfaceChunk& chunk = one.chunks[0];
+    auto corner = [&](std::uint32_t v) {
+        const auto& p = chunk.positions[v];
+        return ivec3(p[0], p[1], p[2]);
+    };
+    const glm::uvec4 t = chunk.triangles[0].vertices_material;
+    const ivec3 a = corner(t.x);
+    const ivec3 b = corner(t.y);
+    const ivec3 c = corner(t.z);
+    const dvec3 cross = glm::cross(dvec3(b - a), dvec3(c - a));
+    const dvec3 normal = glm::length(cross) > 0.0 ? glm::normalize(cross) : dvec3(0.0);
+    const int fine_side = 1 << (LATTICE_BITS - fine_level);
+    const ivec3 low = glm::max(glm::min(a, glm::min(b, c)) / fine_side - 1, ivec3(0));
+    const ivec3 high = glm::min(glm::max(a, glm::max(b, c)) / fine_side + 1, ivec3(4 * side - 1));
+    const voxelizer::BitGrid bits = reference::exact_voxels(one, {fine_level, low, high - low + 1});
+    for (int z = 0; z < bits.size.z; ++z) {
+        for (int y = 0; y < bits.size.y; ++y) {
+            for (int x = 0; x < bits.size.x; ++x) {
+                if (!bits.at({x, y, z})) continue;
+                const ivec3 f = low + ivec3(x, y, z);
+                const ivec3 v = f / 4;
+                const int voxel = (v.z * side + v.y) * side + v.x;
+                Gathered& g = all[std::size_t(voxel)];
+                g.fine[f.x % 4][f.y % 4][f.z % 4] = true;
+                g.normal += normal;
+                g.moments += glm::outerProduct(normal, normal);
+                g.weight += 1.0;
+            }
+        }
+    }
+}
+
+struct Hit {
+    double transmittance = 1.0;
+    dvec3 normal{0.0};
+    double best_weight = 0.0;
+    double depth = 0.0;
+};
+
+/// Calls visit(voxel, t_in, t_out) for each voxel that the ray crosses, nearest first, until it returns
+/// false. Positions in voxels.
+void cross_voxels(int side, const dvec3& origin, const dvec3& direction, double t_end,
+                  const std::function<bool(const ivec3&, double, double)>& visit) {
+    double t_near = 0.0;
+    double t_far = t_end;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0.0) {
+            if (origin[axis] < 0.0 || origin[axis] > side) return;
+            continue;
+        }
+        const double t0 = -origin[axis] / direction[axis];
+        const double t1 = (side - origin[axis]) / direction[axis];
+        t_near = std::max(t_near, std::min(t0, t1));
+        t_far = std::min(t_far, std::max(t0, t1));
+    }
+    if (t_near >= t_far) return;
+    ivec3 v = glm::clamp(ivec3(glm::floor(origin + direction * t_near)), ivec3(0), ivec3(side - 1));
+    for (double t = t_near; t < t_end;) {
+        int axis = 0;
+        double t_out = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < 3; ++k) {
+            if (direction[k] == 0.0) continue;
+            const double plane = (v[k] + (direction[k] > 0.0 ? 1 : 0) - origin[k]) / direction[k];
+            if (plane < t_out) {
+                t_out = plane;
+                axis = k;
+            }
+        }
+        t_out = std::max(t_out, t);
+        if (!visit(v, t, t_out)) return;
+        v[axis] += direction[axis] > 0.0 ? 1 : -1;
+        if (v[axis] < 0 || v[axis] >= side) return;
+        t = t_out;
+    }
+}
+
+double behind(double transmittance, double coverage) {
+    return std::max(transmittance - std::min(2.0 * coverage, 1.0), 0.0);
+}
+
+/// What a ray sees of the surface at a point, from the four voxel centres of the tetrahedron around it;
+/// outside the root cube there is nothing.
+dvec3 visible_normal(const DenseVoxels& voxels, const ivec3& own, const dvec3& point,
+                     const dvec3& direction) {
+    const dvec3 p = point - 0.5;
+    const ivec3 low = ivec3(glm::floor(p));
+    const dvec3 f = p - dvec3(low);
+    std::array<int, 3> axes = {0, 1, 2};
+    std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return f[a] > f[b]; });
+    ivec3 corner = low;
+    dvec3 seen(0.0);
+    dvec3 all(0.0);
+    double spread = 0.0;
+    for (int i = 0; i <= 3; ++i) {
+        double weight =
+            (i == 0 ? 1.0 : f[axes[std::size_t(i - 1)]]) - (i == 3 ? 0.0 : f[axes[std::size_t(i)]]);
+        if (glm::all(glm::equal(corner, own))) weight += 0.125;
+        const bool inside = glm::all(glm::greaterThanEqual(corner, ivec3(0))) &&
+                            glm::all(glm::lessThan(corner, ivec3(voxels.side)));
+        const TwoNormals n = inside ? voxels.normals[voxels.index(corner)] : TwoNormals{};
+        if (n.there) {
+            const dvec3 first = weight * (1.0 - n.share) * n.first;
+            const dvec3 second = weight * n.share * n.second;
+            seen += std::max(-glm::dot(n.first, direction), 0.0) * first +
+                    std::max(-glm::dot(n.second, direction), 0.0) * second;
+            all += first + second;
+            spread += weight * (1.0 - glm::dot(n.first, n.second));
+        }
+        if (i < 3) ++corner[axes[std::size_t(i)]];
+    }
+    if (glm::length(seen) > 0.01) return glm::normalize(seen);
+    if (glm::length(all) < 1e-3) return -direction;
+    const dvec3 normal = glm::normalize(all);
+    const double away = glm::dot(normal, direction);
+    const double bend =
+        std::clamp(std::sqrt(2.0 * spread / glm::length(all)), VOXEL_SILHOUETTE_BEND, SILHOUETTE_BEND);
+    return away > bend ? -normal : glm::normalize(normal - std::max(away, 0.0) * direction);
+}
+
+Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direction) {
+    Hit hit;
+    cross_voxels(voxels.side, eye, direction, 1e30, [&](const ivec3& v, double t_in, double t_out) {
+        const double coverage = voxels.coverage[voxels.index(v)];
+        if (coverage == 0.0) return true;
+        const double left = behind(hit.transmittance, coverage);
+        const double weight = hit.transmittance - left;
+        const double middle = 0.5 * (t_in + t_out);
+        hit.normal += weight * visible_normal(voxels, v, eye + direction * middle, direction);
+        if (weight > hit.best_weight) {
+            hit.best_weight = weight;
+            hit.depth = middle;
+        }
+        hit.transmittance = left;
+        return hit.transmittance > OPAQUE_TRANSMITTANCE;
+    });
+    if (hit.transmittance <= OPAQUE_TRANSMITTANCE) hit.transmittance = 0.0;
+    return hit;
+}
+
+double shadow_ray(const DenseVoxels& voxels, const dvec3& receiver, const dvec3& normal,
+                  const dvec3& direction, double reach) {
+    double visibility = 1.0;
+    const double own_reach = std::clamp(2.5 / std::max(glm::dot(normal, direction), 1e-3), 8.0, 64.0);
+    cross_voxels(voxels.side, receiver, direction, reach, [&](const ivec3& v, double t_in, double t_out) {
+        const double coverage = voxels.coverage[voxels.index(v)];
+        const bool own =
+            0.5 * (t_in + t_out) < own_reach && glm::dot(dvec3(v) + 0.5 - receiver, normal) < 1.75;
+        if (coverage == 0.0 || own) return true;
+        visibility = behind(visibility, coverage);
+        return visibility > OPAQUE_TRANSMITTANCE;
+    });
+    return visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
+}
+
+double srgb(double c) {
+    c = std::clamp(c, 0.0, 1.0);
+    return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+}
+
+}  // namespace
+
+DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution) {
+    const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
+    DenseVoxels out;
+    out.side = resolution;
+    out.grid = voxelizer::grid_around(snapshot.bounds, resolution);
+    voxelizer::Surface surface = voxelizer::build_surface(scene, snapshot, out.grid, {.attributes = true});
+    const int fine_level = surface.grid.level() + 2;
+    std::vector<Gathered> all(std::size_t(resolution) * std::size_t(resolution) * std::size_t(resolution));
+    voxelizer::Surface one = surface;
+    for (const voxelizer::SurfaceChunk& chunk : surface.chunks) {
+        one.chunks = {chunk};
+        for (const interop::SurfaceTriangle& triangle : chunk.triangles) {
+            one.chunks[0].triangles = {triangle};
+            one.triangle_count = 1;
+            gather(one, fine_level, resolution, all);
+        }
+    }
+    for (const Gathered& g : all) {
+        const double coverage = coverage_of(g);
+        out.coverage.push_back(coverage);
+        out.normals.push_back(two_normals(g));
+    }
+    return out;
+}
+
+optics::Image march_dense(const DenseVoxels& voxels, const renderer::View& view) {
+    auto place = [&](const dvec3& world) { return (world - voxels.grid.origin) / voxels.grid.voxel_size; };
+    const dvec3 eye = place(view.camera.eye);
+    const dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
+    const dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
+    const dvec3 up = glm::cross(right, forward);
+    const double half_height = std::tan(0.5 * view.camera.yfov);
+    const double half_width = half_height * view.width / view.height;
+    optics::Image image{view.width, view.height, {}};
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const double px = (x + 0.5) / view.width * 2.0 - 1.0;
+            const double py = (y + 0.5) / view.height * 2.0 - 1.0;
+            const dvec3 direction = glm::normalize(forward + px * half_width * right - py * half_height * up);
+            const Hit hit = primary_ray(voxels, eye, direction);
+            const double alpha = 1.0 - hit.transmittance;
+            dvec3 color(view.background);
+            if (alpha > 0.0) {
+                const dvec3 normal = glm::length(hit.normal) < 1e-6 ? -direction : glm::normalize(hit.normal);
+                const dvec3 point = eye + direction * hit.depth;
+                auto to_light = [&](const dvec3& from) {
+                    return view.light.positional ? glm::normalize(place(view.light.position) - from)
+                                                 : glm::normalize(view.light.towards);
+                };
+                const double facing = std::max(glm::dot(normal, to_light(point)), 0.0);
+                double visibility = 1.0;
+                if (view.shadow == renderer::Shadow::hard && facing > 0.0 && alpha >= 1.0 / 512.0) {
+                    const double reach =
+                        view.light.positional ? glm::length(place(view.light.position) - point) : 1e30;
+                    visibility = shadow_ray(voxels, point, normal, to_light(point), reach);
+                }
+                const double ambient = view.light.ambient;
+                const dvec3 light = dvec3(view.light.color) * (ambient * (0.75 + 0.25 * normal.y) +
+                                                               (1.0 - ambient) * facing * visibility);
+                color = alpha * light + hit.transmittance * dvec3(view.background);
+            }
+            for (int k = 0; k < 3; ++k)
+                image.rgba.push_back(std::uint8_t(std::lround(255.0 * srgb(color[k]))));
+            image.rgba.push_back(std::uint8_t(std::lround(255.0 * std::clamp(alpha, 0.0, 1.0))));
+        }
+    }
+    return image;
+}
+
+}  // namespace cairn::test
