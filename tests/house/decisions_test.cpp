@@ -299,7 +299,7 @@ TEST_F(FakeDocuments, WithADecisionThatNothingHoldsNameIt) {
     EXPECT_EQ(faults(), expected);
 }
 
-TEST_F(FakeDocuments, WithASuccessionThatIsToldOnOneSideNameIt) {
+TEST_F(FakeDocuments, WithASuccessionThatLinksOneWayNameIt) {
     add("docs/decisions/room.md", decision("Walls: of stone", "superseded by [wood](#walls-of-wood)", "") +
                                       decision("Walls: of wood", "accepted", ""));
     EXPECT_EQ(faults(), Faults{"room.md#walls-of-stone: what supersedes it does not link back"});
