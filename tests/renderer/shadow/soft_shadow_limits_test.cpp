@@ -20,6 +20,7 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 using optics::Light;
+using renderer::fit_shadow_frustum;
 using renderer::ShadowFrustum;
 using renderer::ShadowPasses;
 using renderer::SoftShadowMap;
