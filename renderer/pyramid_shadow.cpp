@@ -8,7 +8,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "renderer/marched_view.h"
+#include "renderer/march/march_view.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/shadow/column_pyramid.h"
 #include "renderer/shadow/column_shadows.h"
@@ -58,7 +58,7 @@ void PyramidShadowRenderer::Parts::build_pyramid() {
 
 /// @param shown  SHOW_SURFACE or SHOW_LIGHT
 std::vector<std::uint32_t> PyramidShadowRenderer::Parts::light(const View& view, int shown) {
-    check(view, shape);
+    check_view(view, shape);
     const auto start = Clock::now();
     statistics = {.move_ms = move_ms, .pyramid_bytes = pyramid.size_bytes()};
     build_pyramid();

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "renderer/look_ahead.h"
+#include "renderer/frame/prefetch_view.h"
+#include "renderer/march/march_view.h"
 #include "renderer/march/transfer_table.h"
-#include "renderer/marched_view.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/produce/dense_field.h"
 #include "renderer/produce/surface_content.h"
@@ -44,16 +44,6 @@ Renderer::Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
                    const gl::ShaderSource& shaders)
     : parts_(std::make_unique<Parts>(tree_shape_of(options), std::move(content), options, shaders)) {}
 
-TreeShape tree_shape_of(const TreeOptions& options) {
-    if (!options.max_level)
-        return make_tree_shape(options.n, options.m, options.max_resolution, options.mips);
-    if (options.mips) {
-        throw Error(Fault::usage, "tree", "bricks of a tree of any depth have no mip levels",
-                    "leave the mips and blended levels of detail to surfaces");
-    }
-    return make_deep_tree_shape(options.n, options.m, *options.max_level);
-}
-
 Renderer::Renderer(const scenes::Volume& volume, const TransferFunction& transfer, const TreeOptions& options,
                    const VolumeOptions& volume_options, const gl::ShaderSource& shaders)
     : Renderer(std::make_shared<DenseField>(volume, options.n), transfer, options, volume_options, shaders) {}
@@ -83,7 +73,7 @@ void Renderer::set_mix(const Mix& mix) {
 
 optics::Image Renderer::march(const View& view, Rows rows, int shown,
                               const std::function<void(int)>& march_band) {
-    check(view, parts_->shape);
+    check_view(view, parts_->shape);
     if (rows.first < 0 || rows.count < 1 || rows.count > view.height - rows.first) {
         throw Error(
             Fault::usage, "view",
@@ -170,7 +160,7 @@ optics::Image Renderer::render_rows_within(const View& view, Rows rows, double b
 }
 
 std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
-    check(next, parts_->shape);
+    check_view(next, parts_->shape);
     const auto deadline = deadline_in(budget_ms);
     Parts& parts = *parts_;
     parts.require_lists();

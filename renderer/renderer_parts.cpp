@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "renderer/look_ahead.h"
-#include "renderer/marched_view.h"
+#include "renderer/frame/prefetch_view.h"
+#include "renderer/march/march_view.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "shaders/interop/config.h"
 

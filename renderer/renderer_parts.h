@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/clock.h"
-#include "renderer/kept_picture.h"
+#include "renderer/frame/kept_picture.h"
 #include "renderer/march/marcher.h"
 #include "renderer/march/windows.h"
 #include "renderer/pool/brick_cache.h"

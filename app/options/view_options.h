@@ -33,7 +33,7 @@ void add_camera_options(CLI::App& verb, ViewOptions& options);  ///< of those: p
 void add_tree_options(CLI::App& verb, ViewOptions& options);    ///< of those: voxels and their caches
 
 /// The view of the options, with the scene's own light and a camera that sees the whole scene where none was
-/// given. @throws Error as renderer::check() does.
+/// given. @throws Error as renderer::check_view() does.
 [[nodiscard]] renderer::View view_of(const ViewOptions& options, const scenes::Snapshot& snapshot);
 
 /// What `--camera` is to be given for this camera: for a snapped one it means the same, bit for bit. Its up

@@ -9,7 +9,7 @@
 #include "bench/trials/frames.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
-#include "renderer/marched_view.h"
+#include "renderer/march/march_view.h"
 
 namespace cairn::bench {
 namespace {

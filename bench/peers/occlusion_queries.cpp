@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "renderer/marched_view.h"
+#include "renderer/march/march_view.h"
 #include "shaders/interop/config.h"
 
 namespace cairn::bench {
@@ -28,7 +28,7 @@ renderer::MarchKind saturating() {
 
 interop::MarchView marched_view(const renderer::View& view, const renderer::Content& content,
                                 const renderer::TreeShape& shape) {
-    renderer::check(view, shape);
+    renderer::check_view(view, shape);
     if (content.has_constant() || !content.channels().normal) {
         throw Error(Fault::usage, "visibility", "a volume has no depth at which all rays end",
                     "choose a scene of surfaces");

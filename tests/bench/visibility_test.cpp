@@ -12,7 +12,7 @@
 #include "bench/peers/occlusion_queries.h"
 #include "bench/peers/view_tiles.h"
 #include "bench/trials/frames.h"
-#include "renderer/marched_view.h"
+#include "renderer/march/march_view.h"
 #include "tests/support/gl_fixture.h"
 
 namespace cairn::bench {

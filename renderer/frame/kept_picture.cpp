@@ -1,4 +1,4 @@
-#include "renderer/kept_picture.h"
+#include "renderer/frame/kept_picture.h"
 
 #include <algorithm>
 

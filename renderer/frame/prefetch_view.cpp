@@ -1,4 +1,4 @@
-#include "renderer/look_ahead.h"
+#include "renderer/frame/prefetch_view.h"
 
 #include <algorithm>
 

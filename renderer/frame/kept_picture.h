@@ -3,7 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "renderer/renderer.h"
+#include "optics/image.h"
+#include "renderer/view/view.h"
 
 namespace cairn::renderer {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "renderer/pool/tree_shape.h"
-#include "renderer/renderer.h"
+#include "renderer/view/view.h"
 
 /// What is marched to prefetch: fewer rays than a picture has, and only some of its rows at a time.
 namespace cairn::renderer {

@@ -1,27 +1,13 @@
 #pragma once
 
-#include <cstdint>
-
 #include "renderer/march/windows.h"
 #include "renderer/pool/tree_shape.h"
-#include "renderer/renderer.h"
+#include "renderer/view/view.h"
 #include "shaders/interop/types.h"
 #include "voxelizer/grid.h"
 
 /// From a view in the world to what rays are told of it.
 namespace cairn::renderer {
-
-/// A camera that cannot be is a fault of the caller, and NaN in a shader is a picture that nobody can
-/// explain.
-/// @throws Error (Fault::usage)
-void check(const View& view, const TreeShape& shape);
-
-/// Does the view ask for shadows of more than the light's middle?
-[[nodiscard]] bool is_soft(const View& view);
-
-/// A pixel that shows nothing else, as write_pixel() in shade.glsl would encode it.
-[[nodiscard]] std::uint32_t background_pixel(const glm::vec3& linear);
-[[nodiscard]] optics::Image background_image(const View& view, Rows rows);
 
 /// Where a point of the view is in the tree. Unanchored ones are told from the root cube.
 [[nodiscard]] Place place_of(const View& view, const glm::dvec3& point, const voxelizer::Grid& grid);
