@@ -12,10 +12,11 @@
 #include "app/options/options.h"
 #include "app/options/view_options.h"
 #include "optics/light.h"
-#include "renderer/shadow/soft_shadow_map.h"
+#include "renderer/shadow/shadow_options.h"
 
 namespace cairn::app {
 
+/// Those of the renderer, and the truth.
 enum class ShadowMethod : std::uint8_t { voxel, pyramid, soft_shadow_map, embree };
 
 struct ShadowOptions {

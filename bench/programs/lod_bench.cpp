@@ -19,6 +19,7 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "gl/context.h"
+#include "optics/srgb.h"
 #include "reference/image.h"
 #include "renderer/renderer.h"
 #include "scenes/load.h"
@@ -68,11 +69,6 @@ std::vector<dvec3> normals_of(const scenes::Snapshot& snapshot) {
     return normals;
 }
 
-double srgb(double c) {
-    c = std::clamp(c, 0.0, 1.0);
-    return 255.0 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055);
-}
-
 /// sRGB, 0 to 255, three channels a pixel.
 std::vector<double> truth(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                           const renderer::View& view) {
@@ -111,7 +107,7 @@ std::vector<double> truth(const scenes::Scene& scene, const scenes::Snapshot& sn
         }
     }
     for (double& sum : sums)
-        sum = srgb(sum / (samples_a_side * samples_a_side));
+        sum = 255.0 * optics::srgb_from_linear(sum / (samples_a_side * samples_a_side));
     return sums;
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "optics/srgb.h"
 #include "shaders/interop/config.h"
 
 namespace cairn::renderer {
@@ -116,13 +117,8 @@ void check_view(const View& view, const TreeShape& shape) {
 }
 
 std::uint32_t background_pixel(const glm::vec3& linear) {
-    std::uint32_t pixel = 0;
-    for (int channel = 0; channel < 3; ++channel) {
-        const double c = std::clamp(double(linear[channel]), 0.0, 1.0);
-        const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
-        pixel |= std::uint32_t(std::lround(255.0 * encoded)) << (8 * channel);
-    }
-    return pixel;
+    const glm::u8vec3 encoded = optics::srgb8_from_linear(linear);
+    return std::uint32_t(encoded.r) | std::uint32_t(encoded.g) << 8U | std::uint32_t(encoded.b) << 16U;
 }
 
 optics::Image background_image(const View& view, Rows rows) {

@@ -34,7 +34,8 @@ const std::vector<Folder> folders = {
     {"gl/", {"gl/", "shaders/", "base/"}},
     {"scenes/", {"scenes/", "base/"}},
     {"optics/", {"optics/", "scenes/", "base/"}},
-    {"voxelizer/", {"voxelizer/", "gl/", "scenes/", "shaders/interop/", "base/"}},
+    // Of optics/ only the curve of sRGB, which files of voxels are written with.
+    {"voxelizer/", {"voxelizer/", "optics/srgb.h", "gl/", "scenes/", "shaders/interop/", "base/"}},
     // Of the voxelizer only plain types and what defines an exact answer: none of what the
     // reference is to judge.
     {"reference/",
@@ -54,8 +55,8 @@ const std::vector<Folder> folders = {
      {"renderer/frame/", "renderer/march/", "renderer/view/", "renderer/mesh/", "renderer/produce/",
       "renderer/pool/", "optics/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/shadow/",
-     {"renderer/shadow/", "renderer/march/", "renderer/view/", "renderer/produce/", "renderer/pool/",
-      "optics/", "scenes/", "gl/", "shaders/interop/", "base/"}},
+     {"renderer/shadow/", "renderer/march/", "renderer/view/", "renderer/mesh/", "renderer/produce/",
+      "renderer/pool/", "voxelizer/", "optics/", "scenes/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/",
      {"renderer/", "voxelizer/", "optics/", "scenes/", "gl/", "shaders/interop/", "base/"},
      false},
