@@ -29,12 +29,12 @@ glm::dmat4 clip_from_world(const View& view, const scenes::Bounds& bounds) {
     // So far behind all that is there that it is not clipped by rounding, were the near plane the least.
     furthest *= 2.0;
     nearest = std::clamp(0.999 * nearest, 1e-5 * furthest, 0.999 * furthest);
-    return glm::perspective(view.camera.yfov, double(view.width) / view.height, nearest, furthest) * camera;
+    return glm::perspective(view.camera.yfov, double(view.size.width) / view.size.height, nearest, furthest) * camera;
 }
 
 void check(const View& view) {
-    if (view.width >= 1 && view.height >= 1 && view.width <= 16384 && view.height <= 16384) return;
-    throw Error(Fault::usage, "soft shadow", fmt::format("a picture of {}x{}", view.width, view.height),
+    if (view.size.width >= 1 && view.size.height >= 1 && view.size.width <= MAX_PICTURE_SIDE && view.size.height <= MAX_PICTURE_SIDE) return;
+    throw Error(Fault::usage, "soft shadow", fmt::format("a picture of {}x{}", view.size.width, view.size.height),
                 "choose 1 to 16384 pixels a side");
 }
 
@@ -86,15 +86,15 @@ SoftShadowPicture SoftShadowRenderer::render(const View& view, const std::option
     parts.map.compute(view.light,
                       frustum ? *frustum : fit_shadow_frustum(view.light, parts.occluders, parts.receivers),
                       parts.occluder_mesh, parts.receiver_mesh);
-    ProjectedPixels pixels = parts.projection.draw({.width = view.width,
-                                                    .height = view.height,
+    ProjectedPixels pixels = parts.projection.draw({.width = view.size.width,
+                                                    .height = view.size.height,
                                                     .eye = view.camera.eye,
                                                     .clip_from_world = clip_from_world(view, parts.bounds),
                                                     .background = view.background,
                                                     .light_color = view.light.color,
                                                     .ambient = view.light.ambient},
                                                    parts.map, parts.occluder_mesh, parts.receiver_mesh);
-    return {{view.width, view.height, std::move(pixels.rgba)},
+    return {{view.size.width, view.size.height, std::move(pixels.rgba)},
             std::move(pixels.visible),
             std::move(pixels.distance)};
 }
