@@ -29,13 +29,8 @@ glm::dmat4 clip_from_world(const View& view, const scenes::Bounds& bounds) {
     // So far behind all that is there that it is not clipped by rounding, were the near plane the least.
     furthest *= 2.0;
     nearest = std::clamp(0.999 * nearest, 1e-5 * furthest, 0.999 * furthest);
-    return glm::perspective(view.camera.yfov, double(view.size.width) / view.size.height, nearest, furthest) * camera;
-}
-
-void check(const View& view) {
-    if (view.size.width >= 1 && view.size.height >= 1 && view.size.width <= MAX_PICTURE_SIDE && view.size.height <= MAX_PICTURE_SIDE) return;
-    throw Error(Fault::usage, "soft shadow", fmt::format("a picture of {}x{}", view.size.width, view.size.height),
-                "choose 1 to 16384 pixels a side");
+    return glm::perspective(view.camera.yfov, double(view.size.width) / view.size.height, nearest, furthest) *
+           camera;
 }
 
 }  // namespace
@@ -81,7 +76,7 @@ SoftShadowRenderer& SoftShadowRenderer::operator=(SoftShadowRenderer&&) noexcept
 SoftShadowRenderer::~SoftShadowRenderer() = default;
 
 SoftShadowPicture SoftShadowRenderer::render(const View& view, const std::optional<ShadowFrustum>& frustum) {
-    check(view);
+    check_view(view);
     Parts& parts = *parts_;
     parts.map.compute(view.light,
                       frustum ? *frustum : fit_shadow_frustum(view.light, parts.occluders, parts.receivers),
