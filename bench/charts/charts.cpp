@@ -25,21 +25,22 @@ std::span<const ChartKind> charts() {
     return all;
 }
 
-void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
-                const std::string& text) {
+void write_table(Chart& chart, const std::filesystem::path& folder, const std::string& name) {
+    chart.table.name = name;
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
     if (failed) throw Error(Fault::usage, folder.string(), failed.message(), "choose a folder to write to");
-    const std::filesystem::path path = folder / name;
+    const std::filesystem::path path = folder / (name + ".csv");
+    const std::string text = csv_of(chart.table);
     OutputFile file(path);
     file.write(text.data(), text.size());
     file.commit();
     chart.files.push_back(path);
 }
 
-void write_picture(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+void write_picture(Chart& chart, const std::filesystem::path& folder,
                    std::string (*script_of)(const Table&, const std::filesystem::path&)) {
-    const std::filesystem::path path = folder / name;
+    const std::filesystem::path path = folder / (chart.table.name + ".png");
     const std::string failure = run_gnuplot(script_of(chart.table, path), folder);
     if (failure.empty()) {
         chart.files.push_back(path);

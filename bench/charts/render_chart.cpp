@@ -8,7 +8,7 @@
 
 #include "bench/charts/chart.h"
 #include "bench/plots/render_plot.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "reference/image.h"
@@ -104,21 +104,21 @@ public:
             tree.brick_pool_bytes = bytes;
             add({"pool", tree}, make(tree), 1.0);
         }
-        measure_in_turn(entrants_, options.runs, options.budget_ms);
+        measure_in_turn(contenders_, options.runs, options.budget_ms);
     }
 
     void add_rows(const std::string& name, const reference::ShadedImage& truth, Table& table) const {
-        for (std::size_t i = 0; i < entrants_.size(); ++i) {
-            const Entrant& entrant = entrants_[i];
+        for (std::size_t i = 0; i < contenders_.size(); ++i) {
+            const FrameContender& contender = contenders_[i];
             const renderer::TreeOptions& tree = settings_[i].tree;
-            const Errors errors = errors_of(entrant.image, truth);
+            const Errors errors = errors_of(contender.image, truth);
             table.rows.push_back(on_this_machine(
-                {name, settings_[i].varied, std::int64_t(entrant.view.width), std::int64_t(tree.n),
+                {name, settings_[i].varied, std::int64_t(contender.view.width), std::int64_t(tree.n),
                  std::int64_t(tree.m), std::string(name_of(tree.traversal)),
-                 double(tree.brick_pool_bytes) / mebibyte, entrant.view.pixel_error,
-                 median(entrant.samples_ms), errors.rmse, errors.silhouette,
-                 std::int64_t(entrant.converged.bricks_used), std::int64_t(entrant.converged.bricks_produced),
-                 truth.milliseconds}));
+                 double(tree.brick_pool_bytes) / mebibyte, contender.view.pixel_error,
+                 median(contender.samples_ms), errors.rmse, errors.silhouette,
+                 std::int64_t(contender.converged.bricks_used),
+                 std::int64_t(contender.converged.bricks_produced), truth.milliseconds}));
         }
     }
 
@@ -129,7 +129,7 @@ private:
     void add(Setting setting, std::shared_ptr<renderer::Renderer> ours, double pixel_error) {
         renderer::View view = view_;
         view.pixel_error = pixel_error;
-        entrants_.emplace_back(std::move(ours), view);
+        contenders_.emplace_back(std::move(ours), view);
         settings_.push_back(std::move(setting));
     }
 
@@ -137,7 +137,7 @@ private:
     const scenes::Snapshot& snapshot_;
     const renderer::View& view_;
     const ChartOptions& options_;
-    std::vector<Entrant> entrants_;
+    std::vector<FrameContender> contenders_;
     std::vector<Setting> settings_;  // of each
 };
 
@@ -166,8 +166,8 @@ Chart chart_render(const ChartOptions& options) {
         done += 1.0 / double(scenes.size());
         if (options.progress) options.progress(done);
     }
-    write_file(chart, options.folder, "render.csv", csv_of(chart.table));
-    write_picture(chart, options.folder, "render.png", render_plot);
+    write_table(chart, options.folder, "render");
+    write_picture(chart, options.folder, render_plot);
     return chart;
 }
 
