@@ -1,7 +1,7 @@
 #include "app/verbs/shadow_task.h"
 
 #include "base/error.h"
-#include "renderer/shadow/shadow_frustum.h"
+#include "optics/light.h"
 
 namespace cairn::app {
 namespace {
@@ -46,7 +46,7 @@ optics::Light light_of(const ShadowOptions& options, const optics::Light& given,
     if (!options.rectangle && !options.disk) return light;
     const glm::dvec3 target = options.target.value_or(0.5 * (bounds.low + bounds.high));
     const glm::dvec2 size = options.rectangle.value_or(glm::dvec2(2.0 * options.disk.value_or(1.0)));
-    const renderer::RectangleLight aimed = renderer::aimed_light(light.position, target, size.x, size.y);
+    const optics::Light aimed = optics::aimed_light(light.position, target, size.x, size.y);
     light.shape = options.disk ? optics::LightShape::disk : optics::LightShape::rectangle;
     light.half_u = aimed.half_u;
     light.half_v = aimed.half_v;

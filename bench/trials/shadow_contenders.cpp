@@ -8,7 +8,6 @@
 
 #include "bench/peers/pcf_shadow.h"
 #include "reference/area_light.h"
-#include "reference/view.h"
 #include "renderer/soft_shadow.h"
 
 namespace cairn::bench {
@@ -132,12 +131,7 @@ ShadowRun run_map(std::shared_ptr<renderer::SoftShadowRenderer>& made, const Sha
         made = std::make_shared<renderer::SoftShadowRenderer>(scene.scene(), scene.all(),
                                                               scene.caster_nodes(), scene.ground_nodes(), map,
                                                               shadow_case.options.shaders);
-    renderer::SoftShadowView view;
-    view.width = shadow_case.width;
-    view.height = shadow_case.height;
-    view.camera = scene.view(shadow_case.width, shadow_case.height, 1).camera;
-    view.light = {scene.light().position, scene.light().half_u, scene.light().half_v};
-    renderer::SoftShadowPicture picture = made->render(view);
+    renderer::SoftShadowPicture picture = made->render(scene.view(shadow_case.width, shadow_case.height, 1));
     return {made->map().statistics().milliseconds, std::move(picture.visible), is_first, is_first};
 }
 
@@ -207,17 +201,15 @@ void add_plain_maps(const ShadowCase& shadow_case, Contenders& all) {
 ShadowRun run_embree_hard(const ShadowCase& shadow_case, Rays rays) {
     const renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, 1);
     const reference::ReferenceImage image =
-        shadow_case.tracer.trace(reference::camera_of(view.camera), reference::light_of(view.light),
-                                 shadow_case.width, shadow_case.height, 0, rays);
+        shadow_case.tracer.trace(view.camera, view.light, shadow_case.width, shadow_case.height, 0, rays);
     return {image.milliseconds, {image.lit.begin(), image.lit.end()}};
 }
 
 ShadowRun run_embree_soft(const ShadowCase& shadow_case, const reference::AreaLightOptions& options) {
-    const reference::AreaLight light =
-        reference::area_light_of(shadow_case.scene.light(), shadow_case.scene.all().bounds);
     const auto start = Clock::now();
-    const auto found = area_light_visibility(shadow_case.tracer, shadow_case.receivers.points,
-                                             shadow_case.receivers.normals, light, options);
+    const auto found =
+        area_light_visibility(shadow_case.tracer, shadow_case.receivers.points, shadow_case.receivers.normals,
+                              shadow_case.scene.light(), options);
     const double ms = milliseconds_since(start);
     std::vector<float> values;
     values.reserve(found.size());
