@@ -58,6 +58,23 @@ struct ChartKind {
 /// Forest et al. 2009, Tables 2 and 3: shadow_rays.csv.
 [[nodiscard]] Chart chart_shadow_rays(const ChartOptions& options);
 
+/// The conservative method against the exact reference, bit by bit: check.csv. Chart::differs is true if a
+/// scene differs or fails.
+[[nodiscard]] Chart chart_check(const ChartOptions& options);
+
+/// Levels of detail by time, memory and error against Embree: levels.csv.
+[[nodiscard]] Chart chart_levels(const ChartOptions& options);
+
+/// Animations moved and voxelized for each frame, beside Embree's rebuilding: moving.csv.
+/// @throws Error (Fault::usage) if a scene has no animation, besides what loading and voxelizing throw.
+[[nodiscard]] Chart chart_moving(const ChartOptions& options);
+
+/// One region that holds about 2000 triangles, with the index and without: region_deep.csv.
+[[nodiscard]] Chart chart_region_deep(const ChartOptions& options);
+
+/// A grid tile by tile, in regions of 1 to 64 MiB: region_sizes.csv.
+[[nodiscard]] Chart chart_region_sizes(const ChartOptions& options);
+
 /// Names the chart's table `name`, writes it as `folder`/`name`.csv, and adds that to the chart's files.
 /// @throws Error (Fault::usage) if the folder cannot be made or written to.
 void write_table(Chart& chart, const std::filesystem::path& folder, const std::string& name);

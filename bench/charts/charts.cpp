@@ -4,6 +4,7 @@
 #include "base/output_file.h"
 #include "bench/charts/chart.h"
 #include "bench/plots/gnuplot.h"
+#include "bench/plots/panel.h"
 
 namespace cairn::bench {
 
@@ -21,6 +22,11 @@ std::span<const ChartKind> charts() {
         ChartKind{"production", "bricks that a first frame produces, and uses", chart_production},
         ChartKind{"soft-shadow-map", "error and time of soft shadow maps", chart_soft_shadow_map},
         ChartKind{"visibility", "bricks produced: rays, occlusion queries, frustum", chart_visibility},
+        ChartKind{"levels", "levels of detail by time, memory and error", chart_levels},
+        ChartKind{"moving", "animated scenes voxelized, beside Embree's rebuild", chart_moving},
+        ChartKind{"region-deep", "a small region, with its index and without", chart_region_deep},
+        ChartKind{"region-sizes", "a grid in regions of 1 to 64 MiB", chart_region_sizes},
+        ChartKind{"check", "every scene against the exact voxels", chart_check},
     };
     return all;
 }
@@ -35,7 +41,7 @@ void write_table(Chart& chart, const std::filesystem::path& folder, const std::s
     OutputFile file(path);
     file.write(text.data(), text.size());
     file.commit();
-    chart.files.push_back(path);
+    add_once(chart.files, path);
 }
 
 void write_picture(Chart& chart, const std::filesystem::path& folder,

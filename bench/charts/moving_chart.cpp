@@ -34,13 +34,13 @@ struct Result {
 };
 
 void measure_animation(const scenes::Scene& scene, int animation, int resolution,
-                       voxelizer::Voxelizer& voxelizer, Result& result) {
+                       voxelizer::Voxelizer& voxelizer, const gl::ShaderSource& shaders, Result& result) {
     const scenes::When when{0.0, animation, std::nullopt};
     const std::vector<double> times = scenes::frame_times(scene, when, frames_per_second);
     const voxelizer::Grid grid =
         voxelizer::grid_around(scenes::bounds_over_animation(scene, when, frames_per_second), resolution);
     const voxelizer::Region region = voxelizer::whole(grid);
-    voxelizer::MovingSurface moving(scene, when, grid);
+    voxelizer::MovingSurface moving(scene, when, grid, {}, shaders);
     result.triangles = moving.triangle_count();
     const scenes::Snapshot first = scenes::take_snapshot(scene, when);
     RebuiltTree low(first, RTC_BUILD_QUALITY_LOW);
@@ -84,32 +84,20 @@ void measure_animation(const scenes::Scene& scene, int animation, int resolution
     }
 }
 
-std::vector<Cell> measure(const std::string& path, int resolution, voxelizer::Voxelizer& voxelizer) {
+std::vector<Cell> measure(const std::string& path, int resolution, voxelizer::Voxelizer& voxelizer,
+                          const gl::ShaderSource& shaders) {
     const scenes::Scene scene = scenes::load(path);
     if (scene.animations.empty())
         throw Error(Fault::usage, path, "it has no animation", "choose an animated scene");
     Result r;
     for (int animation = 0; animation < int(scene.animations.size()); ++animation)
-        measure_animation(scene, animation, resolution, voxelizer, r);
-    return on_this_machine({std::filesystem::path(path).filename().string(),
-                            std::int64_t(resolution),
-                            std::int64_t(r.triangles),
-                            std::int64_t(r.ours.frames.size()),
-                            r.deform.wall_ms(),
-                            r.voxelize.wall_ms(),
-                            r.ours.wall_ms(),
-                            r.read_back.wall_ms(),
-                            r.snapshot.wall_ms(),
-                            r.low.wall_ms(),
-                            r.low_with_snapshot.wall_ms(),
-                            r.medium.wall_ms(),
-                            r.medium_with_snapshot.wall_ms(),
-                            r.ours.processor_ms(),
-                            r.low.processor_ms(),
-                            r.medium.processor_ms(),
-                            std::int64_t(r.checked),
-                            std::int64_t(r.missing),
-                            std::int64_t(r.extra)});
+        measure_animation(scene, animation, resolution, voxelizer, shaders, r);
+    return on_this_machine(
+        {std::filesystem::path(path).filename().string(), std::int64_t(resolution), std::int64_t(r.triangles),
+         std::int64_t(r.ours.frames.size()), r.deform.wall_ms(), r.voxelize.wall_ms(), r.ours.wall_ms(),
+         r.read_back.wall_ms(), r.snapshot.wall_ms(), r.low.wall_ms(), r.low_with_snapshot.wall_ms(),
+         r.medium.wall_ms(), r.medium_with_snapshot.wall_ms(), r.ours.processor_ms(), r.low.processor_ms(),
+         r.medium.processor_ms(), std::int64_t(r.checked), std::int64_t(r.missing), std::int64_t(r.extra)});
 }
 
 }  // namespace
@@ -145,7 +133,7 @@ Chart chart_moving(const ChartOptions& options) {
     double done = 0.0;
     for (const std::string& scene : scenes) {
         for (const int resolution : resolutions) {
-            chart.table.rows.push_back(measure(scene, resolution, voxelizer));
+            chart.table.rows.push_back(measure(scene, resolution, voxelizer, options.shaders));
             done += 1.0 / double(scenes.size() * resolutions.size());
             if (options.progress) options.progress(done);
         }

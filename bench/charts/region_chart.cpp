@@ -121,8 +121,9 @@ std::vector<std::string> scenes_of(Chart& chart, const ChartOptions& options) {
 
 Chart chart_region_deep(const ChartOptions& options) {
     Chart chart;
-    chart.table.columns = {"scene",     "triangles",     "inside",       "level",            "occupied",
-                           "region_ms", "region_cpu_ms", "index_cpu_ms", "without_index_ms", "driver"};
+    chart.table.columns = {
+        "scene",         "triangles",    "inside",           "level", "occupied", "region_ms",
+        "region_cpu_ms", "index_cpu_ms", "without_index_ms", "driver"};
     voxelizer::ConservativeVoxelizer voxelizer(options.shaders);
     const std::vector<std::string> scenes = scenes_of(chart, options);
     for (const std::string& scene : scenes) {

@@ -2,13 +2,13 @@
 // pixel error and the shape of the tree, and at one of them over traversals and pool sizes.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <utility>
 
 #include "bench/charts/chart.h"
 #include "bench/plots/render_plot.h"
 #include "bench/trials/frame_contenders.h"
+#include "bench/trials/picture_truth.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "reference/image.h"
@@ -19,7 +19,6 @@ namespace cairn::bench {
 namespace {
 
 constexpr int own_size = 512;
-constexpr int samples_a_side = 8;
 constexpr double mebibyte = 1048576.0;
 constexpr renderer::TreeOptions base{};
 /// The base shape has them all; the others every second one.
@@ -43,38 +42,6 @@ const char* name_of(renderer::Traversal traversal) {
             break;
     }
     return "mini-stack";
-}
-
-struct Errors {
-    double rmse = 0.0;        ///< of sRGB in [0, 1]
-    double silhouette = 0.0;  ///< wrongly covered area, as a share of what the scene covers
-};
-
-Errors errors_of(const optics::Image& ours, const reference::ShadedImage& truth) {
-    double squares = 0.0;
-    double wrong = 0.0;
-    double covered = 0.0;
-    for (std::size_t p = 0; p < truth.srgb.size(); ++p) {
-        for (int channel = 0; channel < 3; ++channel) {
-            const double apart =
-                ours.rgba[4 * p + std::size_t(channel)] / 255.0 - double(truth.srgb[p][channel]);
-            squares += apart * apart;
-        }
-        wrong += std::abs(ours.rgba[4 * p + 3] / 255.0 - double(truth.coverage[p]));
-        covered += double(truth.coverage[p]);
-    }
-    return {std::sqrt(squares / (3.0 * double(truth.srgb.size()))), wrong / std::max(covered, 1.0)};
-}
-
-reference::ShadedImage truth_of(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
-                                const renderer::View& view) {
-    reference::Shading shading;
-    shading.light_color = view.light.color;
-    shading.ambient = view.light.ambient;
-    shading.background = view.background;
-    shading.shadows = view.shadow == renderer::Shadow::hard;
-    return reference::ImageTracer(scene, snapshot)
-        .shade(view.camera, view.light, shading, view.width, view.height, samples_a_side);
 }
 
 /// Frames in turn, over all that is varied.
@@ -109,7 +76,7 @@ public:
         for (std::size_t i = 0; i < contenders_.size(); ++i) {
             const FrameContender& contender = contenders_[i];
             const renderer::TreeOptions& tree = settings_[i].tree;
-            const Errors errors = errors_of(contender.image, truth);
+            const PictureErrors errors = picture_errors(contender.image, truth);
             table.rows.push_back(on_this_machine(
                 {name, settings_[i].varied, std::int64_t(contender.view.width), std::int64_t(tree.n),
                  std::int64_t(tree.m), std::string(name_of(tree.traversal)),
@@ -159,7 +126,7 @@ Chart chart_render(const ChartOptions& options) {
         renderer::View view;
         view.width = view.height = size;
         view.camera = optics::framing_camera(snapshot.bounds, 1.0);
-        const reference::ShadedImage truth = truth_of(scene, snapshot, view);
+        const reference::ShadedImage truth = true_picture(scene, snapshot, view);
         Contest(scene, snapshot, view, options).add_rows(scene_name(path), truth, chart.table);
         done += 1.0 / double(scenes.size());
         if (options.progress) options.progress(done);

@@ -21,8 +21,7 @@ RebuiltTree::RebuiltTree(const scenes::Snapshot& snapshot, RTCBuildQuality quali
     rtcSetSceneBuildQuality(tree_.get(), quality);
     if (quality == RTC_BUILD_QUALITY_LOW) rtcSetSceneFlags(tree_.get(), RTC_SCENE_FLAG_DYNAMIC);
     for (const scenes::Item& item : snapshot.items) {
-        if (is_drawn(item))
-            add(item, quality);
+        if (is_drawn(item)) add(item, quality);
     }
     if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE)
         throw Error(Fault::memory, "Embree", "it cannot hold the triangles");
@@ -48,12 +47,10 @@ void RebuiltTree::build() const {
     rtcCommitScene(tree_.get());
 }
 
-
 void RebuiltTree::add(const scenes::Item& item, RTCBuildQuality quality) {
     reference::EmbreeGeometry owner(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-    auto* const vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(owner.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), item.positions.size()));
+    auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+        owner.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), item.positions.size()));
     auto* const indices = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(owner.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 3 * sizeof(std::uint32_t), item.primitive->element_count()));
@@ -64,6 +61,5 @@ void RebuiltTree::add(const scenes::Item& item, RTCBuildQuality quality) {
     rtcAttachGeometry(tree_.get(), owner.get());
     geometries_.push_back({std::move(owner), vertices});
 }
-
 
 }  // namespace cairn::bench

@@ -38,6 +38,7 @@ struct Chart {
     Table table;
     std::vector<std::filesystem::path> files;  ///< written
     std::vector<std::string> notes;            ///< what was left out, and why
+    bool differs = false;                      ///< a comparison with the truth found a difference
 };
 
 }  // namespace cairn::bench
