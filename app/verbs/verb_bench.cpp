@@ -126,7 +126,7 @@ ExitCode run(const Options& options) {
     report.add("driver", driver.name());
     report.add("backend", driver.backend());
     report.finish();
-    return ExitCode::done;
+    return chart.differs ? ExitCode::differs : ExitCode::done;
 }
 
 }  // namespace

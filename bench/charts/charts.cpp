@@ -4,6 +4,7 @@
 #include "base/output_file.h"
 #include "bench/charts/chart.h"
 #include "bench/plots/gnuplot.h"
+#include "bench/plots/panel.h"
 
 namespace cairn::bench {
 
@@ -21,25 +22,31 @@ std::span<const ChartKind> charts() {
         ChartKind{"production", "bricks that a first frame produces, and uses", chart_production},
         ChartKind{"soft-shadow-map", "error and time of soft shadow maps", chart_soft_shadow_map},
         ChartKind{"visibility", "bricks produced: rays, occlusion queries, frustum", chart_visibility},
+        ChartKind{"levels", "levels of detail by time, memory and error", chart_levels},
+        ChartKind{"moving", "animated scenes voxelized, beside Embree's rebuild", chart_moving},
+        ChartKind{"region-deep", "a small region, with its index and without", chart_region_deep},
+        ChartKind{"region-sizes", "a grid in regions of 1 to 64 MiB", chart_region_sizes},
+        ChartKind{"check", "every scene against the exact voxels", chart_check},
     };
     return all;
 }
 
-void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
-                const std::string& text) {
+void write_table(Chart& chart, const std::filesystem::path& folder, const std::string& name) {
+    chart.table.name = name;
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
     if (failed) throw Error(Fault::usage, folder.string(), failed.message(), "choose a folder to write to");
-    const std::filesystem::path path = folder / name;
+    const std::filesystem::path path = folder / (name + ".csv");
+    const std::string text = csv_of(chart.table);
     OutputFile file(path);
     file.write(text.data(), text.size());
     file.commit();
-    chart.files.push_back(path);
+    add_once(chart.files, path);
 }
 
-void write_picture(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+void write_picture(Chart& chart, const std::filesystem::path& folder,
                    std::string (*script_of)(const Table&, const std::filesystem::path&)) {
-    const std::filesystem::path path = folder / name;
+    const std::filesystem::path path = folder / (chart.table.name + ".png");
     const std::string failure = run_gnuplot(script_of(chart.table, path), folder);
     if (failure.empty()) {
         chart.files.push_back(path);

@@ -163,7 +163,7 @@ Chart chart_embree(const ChartOptions& options) {
             if (options.progress) options.progress(done);
         }
     }
-    write_file(chart, options.folder, "embree.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "embree");
     return chart;
 }
 

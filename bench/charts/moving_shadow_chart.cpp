@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "bench/charts/chart.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "reference/shadow_truth.h"
@@ -191,7 +191,7 @@ Chart chart_moving_shadow(const ChartOptions& options) {
             if (options.progress) options.progress(done);
         }
     }
-    write_file(chart, options.folder, "moving_shadow.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "moving_shadow");
     return chart;
 }
 

@@ -2,13 +2,13 @@
 // pixel error and the shape of the tree, and at one of them over traversals and pool sizes.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <utility>
 
 #include "bench/charts/chart.h"
 #include "bench/plots/render_plot.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
+#include "bench/trials/picture_truth.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "reference/image.h"
@@ -19,7 +19,6 @@ namespace cairn::bench {
 namespace {
 
 constexpr int own_size = 512;
-constexpr int samples_a_side = 8;
 constexpr double mebibyte = 1048576.0;
 constexpr renderer::TreeOptions base{};
 /// The base shape has them all; the others every second one.
@@ -43,38 +42,6 @@ const char* name_of(renderer::Traversal traversal) {
             break;
     }
     return "mini-stack";
-}
-
-struct Errors {
-    double rmse = 0.0;        ///< of sRGB in [0, 1]
-    double silhouette = 0.0;  ///< wrongly covered area, as a share of what the scene covers
-};
-
-Errors errors_of(const optics::Image& ours, const reference::ShadedImage& truth) {
-    double squares = 0.0;
-    double wrong = 0.0;
-    double covered = 0.0;
-    for (std::size_t p = 0; p < truth.srgb.size(); ++p) {
-        for (int channel = 0; channel < 3; ++channel) {
-            const double apart =
-                ours.rgba[4 * p + std::size_t(channel)] / 255.0 - double(truth.srgb[p][channel]);
-            squares += apart * apart;
-        }
-        wrong += std::abs(ours.rgba[4 * p + 3] / 255.0 - double(truth.coverage[p]));
-        covered += double(truth.coverage[p]);
-    }
-    return {std::sqrt(squares / (3.0 * double(truth.srgb.size()))), wrong / std::max(covered, 1.0)};
-}
-
-reference::ShadedImage truth_of(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
-                                const renderer::View& view) {
-    reference::Shading shading;
-    shading.light_color = view.light.color;
-    shading.ambient = view.light.ambient;
-    shading.background = view.background;
-    shading.shadows = view.shadow == renderer::Shadow::hard;
-    return reference::ImageTracer(scene, snapshot)
-        .shade(view.camera, view.light, shading, view.width, view.height, samples_a_side);
 }
 
 /// Frames in turn, over all that is varied.
@@ -102,21 +69,21 @@ public:
             tree.brick_pool_bytes = bytes;
             add({"pool", tree}, make(tree), 1.0);
         }
-        measure_in_turn(entrants_, options.runs, options.budget_ms);
+        measure_in_turn(contenders_, options.runs, options.budget_ms);
     }
 
     void add_rows(const std::string& name, const reference::ShadedImage& truth, Table& table) const {
-        for (std::size_t i = 0; i < entrants_.size(); ++i) {
-            const Entrant& entrant = entrants_[i];
+        for (std::size_t i = 0; i < contenders_.size(); ++i) {
+            const FrameContender& contender = contenders_[i];
             const renderer::TreeOptions& tree = settings_[i].tree;
-            const Errors errors = errors_of(entrant.image, truth);
+            const PictureErrors errors = picture_errors(contender.image, truth);
             table.rows.push_back(on_this_machine(
-                {name, settings_[i].varied, std::int64_t(entrant.view.width), std::int64_t(tree.n),
+                {name, settings_[i].varied, std::int64_t(contender.view.width), std::int64_t(tree.n),
                  std::int64_t(tree.m), std::string(name_of(tree.traversal)),
-                 double(tree.brick_pool_bytes) / mebibyte, entrant.view.pixel_error,
-                 median(entrant.samples_ms), errors.rmse, errors.silhouette,
-                 std::int64_t(entrant.converged.bricks_used), std::int64_t(entrant.converged.bricks_produced),
-                 truth.milliseconds}));
+                 double(tree.brick_pool_bytes) / mebibyte, contender.view.pixel_error,
+                 median(contender.samples_ms), errors.rmse, errors.silhouette,
+                 std::int64_t(contender.converged.bricks_used),
+                 std::int64_t(contender.converged.bricks_produced), truth.milliseconds}));
         }
     }
 
@@ -127,7 +94,7 @@ private:
     void add(Setting setting, std::shared_ptr<renderer::Renderer> ours, double pixel_error) {
         renderer::View view = view_;
         view.pixel_error = pixel_error;
-        entrants_.emplace_back(std::move(ours), view);
+        contenders_.emplace_back(std::move(ours), view);
         settings_.push_back(std::move(setting));
     }
 
@@ -135,7 +102,7 @@ private:
     const scenes::Snapshot& snapshot_;
     const renderer::View& view_;
     const ChartOptions& options_;
-    std::vector<Entrant> entrants_;
+    std::vector<FrameContender> contenders_;
     std::vector<Setting> settings_;  // of each
 };
 
@@ -159,13 +126,13 @@ Chart chart_render(const ChartOptions& options) {
         renderer::View view;
         view.width = view.height = size;
         view.camera = optics::framing_camera(snapshot.bounds, 1.0);
-        const reference::ShadedImage truth = truth_of(scene, snapshot, view);
+        const reference::ShadedImage truth = true_picture(scene, snapshot, view);
         Contest(scene, snapshot, view, options).add_rows(scene_name(path), truth, chart.table);
         done += 1.0 / double(scenes.size());
         if (options.progress) options.progress(done);
     }
-    write_file(chart, options.folder, "render.csv", csv_of(chart.table));
-    write_picture(chart, options.folder, "render.png", render_plot);
+    write_table(chart, options.folder, "render");
+    write_picture(chart, options.folder, render_plot);
     return chart;
 }
 

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "bench/charts/chart.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/shadow_runs.h"
 #include "bench/trials/shadow_scene.h"
 #include "reference/shadow_truth.h"
@@ -233,7 +233,7 @@ Chart chart_shadow_rays(const ChartOptions& options) {
         });
         if (options.progress) options.progress(double(i + 1) / double(scenes.size()));
     }
-    write_file(chart, options.folder, "shadow_rays.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "shadow_rays");
     return chart;
 }
 

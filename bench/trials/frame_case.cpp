@@ -1,12 +1,11 @@
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_case.h"
 
 #include <algorithm>
 #include <optional>
-#include <thread>
 #include <utility>
+#include <variant>
 
 #include "bench/trials/real_scenes.h"
-#include "gl/context.h"
 #include "renderer/produce/dense_field.h"
 #include "renderer/produce/fractal_content.h"
 #include "renderer/produce/made_fields.h"
@@ -60,58 +59,68 @@ private:
 
 }  // namespace
 
-struct Subject::Data {
-    std::optional<scenes::Scene> scene;
-    std::optional<scenes::Snapshot> snapshot;
-    std::optional<scenes::Volume> volume;
-    bool is_repeated = false;
-    bool is_sponge = false;
+struct FrameCase::Data {
+    struct AtRest {
+        scenes::Scene scene;
+        scenes::Snapshot snapshot;  ///< points into the scene
+    };
+    /// The shell of builtin:hollow-sphere, or copies of it.
+    struct Shells {
+        bool are_repeated = false;
+    };
+    struct Sponge {};
+
+    std::variant<Sponge, Shells, scenes::Volume, AtRest> shown;
+
+    [[nodiscard]] const AtRest* scene() const { return std::get_if<AtRest>(&shown); }
+    [[nodiscard]] const scenes::Volume* volume() const { return std::get_if<scenes::Volume>(&shown); }
+    [[nodiscard]] bool is_sponge() const { return std::holds_alternative<Sponge>(shown); }
 };
 
-Subject::Subject(const std::string& path) : data_(std::make_unique<Data>()), name_(scene_name(path)) {
-    const scenes::Bounds unit{glm::dvec3(-0.5), glm::dvec3(0.5)};
+FrameCase::FrameCase(const std::string& path) : data_(std::make_unique<Data>()), name_(scene_name(path)) {
     if (path == "builtin:hollow-sphere" || path == "builtin:spheres-repeated") {
-        data_->is_repeated = path == "builtin:spheres-repeated";
-        bounds_ = unit;
+        data_->shown = Data::Shells{path == "builtin:spheres-repeated"};
+        bounds_ = {glm::dvec3(-0.5), glm::dvec3(0.5)};
     } else if (path == "builtin:sponge") {
-        data_->is_sponge = true;
+        data_->shown = Data::Sponge{};
         bounds_ = {glm::dvec3(0.0), glm::dvec3(1.0)};
     } else if (scenes::is_volume_file(path)) {
-        data_->volume = scenes::load_volume(path);
-        bounds_ = data_->volume->bounds();
+        bounds_ = data_->shown.emplace<scenes::Volume>(scenes::load_volume(path)).bounds();
     } else {
-        data_->scene = scenes::load(path);
-        data_->snapshot = scenes::take_snapshot(*data_->scene);
-        bounds_ = data_->snapshot->bounds;
+        Data::AtRest& rest = data_->shown.emplace<Data::AtRest>();
+        rest.scene = scenes::load(path);
+        rest.snapshot = scenes::take_snapshot(rest.scene);
+        bounds_ = rest.snapshot.bounds;
     }
 }
 
-Subject::~Subject() = default;
-Subject::Subject(Subject&&) noexcept = default;
-Subject& Subject::operator=(Subject&&) noexcept = default;
+FrameCase::~FrameCase() = default;
+FrameCase::FrameCase(FrameCase&&) noexcept = default;
+FrameCase& FrameCase::operator=(FrameCase&&) noexcept = default;
 
-Cell Subject::triangles() const {
-    return data_->snapshot ? Cell(std::int64_t(data_->snapshot->triangle_count)) : Cell{};
+Cell FrameCase::triangles() const {
+    const Data::AtRest* const scene = data_->scene();
+    return scene != nullptr ? Cell(std::int64_t(scene->snapshot.triangle_count)) : Cell{};
 }
 
-renderer::TreeOptions Subject::fitted(const renderer::TreeOptions& tree) const {
+renderer::TreeOptions FrameCase::fitted(const renderer::TreeOptions& tree) const {
     renderer::TreeOptions options = tree;
-    if (!data_->is_sponge) return options;
+    if (!data_->is_sponge()) return options;
     options.n = 3;
     options.m = 27;
     options.max_resolution = sponge_resolution;
     return options;
 }
 
-Subject::Shown Subject::shown_field(const renderer::TreeOptions& tree) const {
-    if (data_->volume) {
-        const glm::dvec3& spacing = data_->volume->spacing;
+FrameCase::Shown FrameCase::shown_field(const renderer::TreeOptions& tree) const {
+    if (const scenes::Volume* const volume = data_->volume()) {
+        const glm::dvec3& spacing = volume->spacing;
         const double voxel_size = std::min({spacing.x, spacing.y, spacing.z});
-        return {std::make_shared<renderer::DenseField>(*data_->volume, tree.n),
-                opaque(scan_empty, voxel_size)};
+        return {std::make_shared<renderer::DenseField>(*volume, tree.n), opaque(scan_empty, voxel_size)};
     }
     const std::int64_t resolution = renderer::tree_shape_of(tree).resolution();
-    const int copies = data_->is_repeated ? int(std::max<std::int64_t>(resolution / copy_resolution, 1)) : 1;
+    const bool are_repeated = std::get<Data::Shells>(data_->shown).are_repeated;
+    const int copies = are_repeated ? int(std::max<std::int64_t>(resolution / copy_resolution, 1)) : 1;
     const double side = 1.0 / copies;
     std::shared_ptr<const renderer::Field> field =
         std::make_shared<renderer::HollowSphere>(tree.n, resolution / copies, shell_inner, shell_outer, side);
@@ -122,29 +131,29 @@ Subject::Shown Subject::shown_field(const renderer::TreeOptions& tree) const {
     return {std::move(field), opaque(0.0, 1.0 / double(resolution))};
 }
 
-renderer::Renderer Subject::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders) const {
-    if (data_->scene) return {*data_->scene, *data_->snapshot, tree, shaders};
-    if (data_->is_sponge) return {content(tree, shaders), fitted(tree), shaders};
+renderer::Renderer FrameCase::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders) const {
+    if (const Data::AtRest* const rest = data_->scene()) return {rest->scene, rest->snapshot, tree, shaders};
+    if (data_->is_sponge()) return {content(tree, shaders), fitted(tree), shaders};
     Shown shown = shown_field(tree);
     return {std::move(shown.field), shown.transfer, tree, {}, shaders};
 }
 
-renderer::TreeShape Subject::shape(const renderer::TreeOptions& tree) const {
-    if (!data_->volume) return renderer::tree_shape_of(fitted(tree));
+renderer::TreeShape FrameCase::shape(const renderer::TreeOptions& tree) const {
+    if (data_->volume() == nullptr) return renderer::tree_shape_of(fitted(tree));
     const Shown shown = shown_field(tree);
     return renderer::make_volume_shape(shown.field->frame(), tree.n, tree.m, tree.max_resolution).tree;
 }
 
-std::unique_ptr<renderer::Content> Subject::content(const renderer::TreeOptions& tree,
-                                                    const gl::ShaderSource& shaders) const {
-    if (data_->scene) {
+std::unique_ptr<renderer::Content> FrameCase::content(const renderer::TreeOptions& tree,
+                                                      const gl::ShaderSource& shaders) const {
+    if (const Data::AtRest* const rest = data_->scene()) {
         const renderer::TreeShape shape = renderer::tree_shape_of(tree);
-        const voxelizer::Grid grid = voxelizer::grid_around(data_->snapshot->bounds, shape.resolution());
+        const voxelizer::Grid grid = voxelizer::grid_around(rest->snapshot.bounds, shape.resolution());
         const voxelizer::Surface surface =
-            voxelizer::build_surface(*data_->scene, *data_->snapshot, grid, {.attributes = true});
+            voxelizer::build_surface(rest->scene, rest->snapshot, grid, {.attributes = true});
         return std::make_unique<renderer::SurfaceContent>(shape, surface, shaders);
     }
-    if (data_->is_sponge) {
+    if (data_->is_sponge()) {
         return std::make_unique<renderer::FractalContent>(renderer::tree_shape_of(fitted(tree)), shaders);
     }
     Shown shown = shown_field(tree);
@@ -153,46 +162,10 @@ std::unique_ptr<renderer::Content> Subject::content(const renderer::TreeOptions&
     return std::make_unique<renderer::VolumeContent>(shape, std::move(shown.field), shown.transfer.visible());
 }
 
-renderer::View Subject::view(int width, int height) const {
+renderer::View FrameCase::view(int width, int height) const {
     renderer::View view;
     view.width = width;
     view.height = height;
     view.camera = optics::framing_camera(bounds_, double(width) / height);
     return view;
 }
-
-double frame_ms(renderer::Renderer& renderer, const renderer::View& view) {
-    renderer.forget_picture();
-    (void)renderer.render(view);
-    return renderer.statistics().milliseconds;
-}
-
-Entrant::Entrant(renderer::Renderer made, const renderer::View& looks)
-    : Entrant(std::make_shared<renderer::Renderer>(std::move(made)), looks) {}
-
-Entrant::Entrant(std::shared_ptr<renderer::Renderer> made, const renderer::View& looks)
-    : renderer(std::move(made)), view(looks) {
-    first_ms = frame_ms(*renderer, view);
-    first = renderer->statistics();
-}
-
-void measure_in_turn(std::vector<Entrant>& entrants, int runs, double budget_ms) {
-    double spent_ms = 0.0;
-    for (int run = 0; run < runs && spent_ms <= budget_ms * double(entrants.size()); ++run) {
-        for (Entrant& entrant : entrants) {
-            entrant.renderer->forget_picture();
-            entrant.image = entrant.renderer->render(entrant.view);
-            entrant.converged = entrant.renderer->statistics();
-            entrant.samples_ms.push_back(entrant.converged.milliseconds);
-            spent_ms += entrant.samples_ms.back();
-        }
-    }
-}
-
-std::vector<Cell> on_this_machine(std::vector<Cell> row) {
-    row.emplace_back(gl::driver_name());
-    row.emplace_back(std::int64_t(std::thread::hardware_concurrency()));
-    return row;
-}
-
-}  // namespace cairn::bench
