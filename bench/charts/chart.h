@@ -14,6 +14,8 @@ struct ChartKind {
     std::string_view name;
     std::string_view description;
     Chart (*draw)(const ChartOptions& options);
+    /// The others it varies itself, or renders no voxels.
+    VoxelOptionsTaken takes = {};
 };
 [[nodiscard]] std::span<const ChartKind> charts();
 

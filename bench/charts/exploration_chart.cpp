@@ -55,7 +55,7 @@ public:
 
     void explore(const FrameCase& frame_case) {
         const renderer::View view = frame_case.view(size_, size_);
-        renderer::Renderer ours = frame_case.make({}, options_.shaders);
+        renderer::Renderer ours = make(frame_case);
         (void)ours.render(view);
         come_nearer(frame_case, ours, view);
         go_steadily(frame_case, at(view, nearest));
@@ -65,19 +65,26 @@ public:
     }
 
 private:
+    [[nodiscard]] renderer::Renderer make(const FrameCase& frame_case) const {
+        const VoxelOptions& voxels = options_.voxels;
+        return frame_case.make(voxels.tree(), options_.shaders, voxels.renderer(), voxels.volume());
+    }
+
     /// Converged frames.
     void stand(const FrameCase& frame_case, const char* part, renderer::Renderer& ours,
                const renderer::View& view) {
+        renderer::FrameStatistics last;
         (void)ours.render(view);
         std::vector<double> ms, march_ms;
         double spent_ms = 0.0;
         for (int run = 0; run < options_.runs && spent_ms <= options_.budget_ms; ++run) {
-            ms.push_back(frame_ms(ours, view));
+            last = marched_frame(ours, view, options_.voxels.request()).statistics;
+            ms.push_back(last.milliseconds);
             spent_ms += ms.back();
-            march_ms.push_back(ours.statistics().march_ms);
+            march_ms.push_back(last.march_ms);
         }
         Figures figures;
-        figures.add(ours.statistics(), 1.0);
+        figures.add(last, 1.0);
         figures.render_ms = median(march_ms);
         figures.ms = median(ms);
         add(frame_case, part, 1, figures);
@@ -87,8 +94,8 @@ private:
     void come_nearer(const FrameCase& frame_case, renderer::Renderer& ours, const renderer::View& view) {
         Figures mean;
         for (int frame = 1; frame <= own_frames; ++frame) {
-            (void)ours.render(at(view, std::pow(nearest, double(frame) / own_frames)));
-            mean.add(ours.statistics(), 1.0 / own_frames);
+            const renderer::View next = at(view, std::pow(nearest, double(frame) / own_frames));
+            mean.add(ours.render(next, options_.voxels.request()).statistics, 1.0 / own_frames);
         }
         add(frame_case, "exploration", own_frames, mean);
     }
@@ -96,9 +103,10 @@ private:
     /// Straight on, four voxels of the nearest tile a frame: the speed of Crassin et al. 2008, Figure 7. As
     /// they relax it over time, it drops at once where voxels become finer, and rises slowly.
     void go_steadily(const FrameCase& frame_case, renderer::View view) {
-        const std::unique_ptr<renderer::Content> content = frame_case.content({}, options_.shaders);
-        const renderer::TreeShape shape = frame_case.shape({});
-        renderer::Renderer ours = frame_case.make({}, options_.shaders);
+        const std::unique_ptr<renderer::Content> content =
+            frame_case.content(options_.voxels.tree(), options_.shaders);
+        const renderer::TreeShape shape = frame_case.shape(options_.voxels.tree());
+        renderer::Renderer ours = make(frame_case);
         (void)ours.render(view);
         Figures mean;
         double step = 0.0;
@@ -110,8 +118,7 @@ private:
             const glm::dvec3 way = step * glm::normalize(view.camera.target - view.camera.eye);
             view.camera.eye += way;
             view.camera.target += way;
-            (void)ours.render(view);
-            mean.add(ours.statistics(), 1.0 / own_frames);
+            mean.add(ours.render(view, options_.voxels.request()).statistics, 1.0 / own_frames);
         }
         add(frame_case, "steady", own_frames, mean);
     }

@@ -14,6 +14,7 @@
 #include "bench/trials/frame_contenders.h"
 #include "bench/trials/picture_truth.h"
 #include "bench/trials/real_scenes.h"
+#include "renderer/open_content.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 
@@ -32,11 +33,11 @@ constexpr double steps = 255.0;
 struct Method {
     const char* name;
     bool mips;
-    renderer::LevelOfDetail level_of_detail;
+    renderer::LevelOfDetail::Kind level_of_detail;
 };
-constexpr std::array methods = {Method{"nearest", false, renderer::LevelOfDetail::nearest},
-                                Method{"nearest+mips", true, renderer::LevelOfDetail::nearest},
-                                Method{"blended", true, renderer::LevelOfDetail::blended}};
+constexpr std::array methods = {Method{"nearest", false, renderer::LevelOfDetail::Kind::nearest},
+                                Method{"nearest+mips", true, renderer::LevelOfDetail::Kind::nearest},
+                                Method{"blended", true, renderer::LevelOfDetail::Kind::blended}};
 
 /// Without colours and textures; alpha masks, which need their textures, stay.
 void whiten(scenes::Scene& scene) {
@@ -60,13 +61,13 @@ public:
 
     void measure(int size, double distance, Table& table) const {
         renderer::View view;
-        view.width = view.height = size;
+        view.size = {size, size};
         view.camera = optics::framing_camera(snapshot_.bounds, 1.0);
         view.camera.eye = view.camera.target + distance * (view.camera.eye - view.camera.target);
         const reference::ShadedImage truth = true_picture(scene_, snapshot_, view);
         for (const Method& method : methods) {
             for (const double pixel_error : pixel_errors) {
-                view.pixel_error = pixel_error;
+                view.detail.pixel_error = pixel_error;
                 table.rows.push_back(row_of(view, method, distance, truth));
             }
         }
@@ -75,22 +76,22 @@ public:
 private:
     [[nodiscard]] std::vector<Cell> row_of(renderer::View view, const Method& method, double distance,
                                            const reference::ShadedImage& truth) const {
-        view.level_of_detail = method.level_of_detail;
-        renderer::TreeOptions tree;
-        tree.mips = method.mips;
-        tree.brick_pool_bytes = pool_bytes;
-        renderer::Renderer ours(scene_, snapshot_, tree, options_.shaders);
-        optics::Image image;
-        const Cost first = cost_of([&] { image = ours.render(view); });
-        const renderer::FrameStatistics statistics = ours.statistics();
+        view.detail.kind = method.level_of_detail;
+        const renderer::TreeOptions tree = options_.voxels.tree({.mips = method.mips});
+        renderer::Renderer ours(renderer::surface_content(scene_, snapshot_, tree, options_.shaders),
+                                options_.voxels.renderer({.pools = {.brick_bytes = pool_bytes}}),
+                                options_.shaders);
+        renderer::Frame frame;
+        const Cost first = cost_of([&] { frame = ours.render(view); });
+        const auto& [image, statistics] = frame;
         double least_ms = std::numeric_limits<double>::infinity();
         for (int run = 0; run < options_.runs; ++run)
-            least_ms = std::min(least_ms, cost_of([&] { (void)frame_ms(ours, view); }).processor_ms);
+            least_ms = std::min(least_ms, cost_of([&] { (void)marched_frame(ours, view); }).processor_ms);
         const double slot_kib =
             double(statistics.brick_pool_bytes) / double(statistics.brick_slots) / kibibyte;
         return on_this_machine(
-            {name_, fmt::format("{}x{}", view.width, view.height), distance, std::string(method.name),
-             view.pixel_error, steps * picture_errors(image, truth).rmse,
+            {name_, fmt::format("{}x{}", view.size.width, view.size.height), distance,
+             std::string(method.name), view.detail.pixel_error, steps * picture_errors(image, truth).rmse,
              std::int64_t(statistics.bricks_produced), slot_kib,
              slot_kib * double(statistics.bricks_produced) / kibibyte, first.processor_ms, least_ms});
     }

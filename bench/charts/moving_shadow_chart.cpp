@@ -48,8 +48,7 @@ public:
         scenes::add_ground(scene_, voxelized_);
         times_ = thinned(scenes::frame_times(scene_, when_, frames_per_second),
                          std::size_t(frames_a_run) * std::size_t(runs));
-        view_.width = width;
-        view_.height = height;
+        view_.size = {width, height};
         // The ground receives shadows outside the grid too, and throws none.
         view_.camera = optics::framing_camera(voxelized_, double(width) / height);
         const double size = 2.0 * glm::length(voxelized_.high - voxelized_.low);
@@ -70,7 +69,7 @@ public:
     }
     [[nodiscard]] renderer::View view(int rays) const {
         renderer::View view = view_;
-        view.shadow_rays = rays;
+        view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
         return view;
     }
     [[nodiscard]] const std::vector<double>& times() const { return times_; }

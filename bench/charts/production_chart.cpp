@@ -19,7 +19,9 @@ std::vector<Cell> measure(const FrameCase& frame_case, int size, const ChartOpti
     std::vector<FrameContender> last;
     for (int run = 0; run < options.runs; ++run) {
         last.clear();
-        last.emplace_back(frame_case.make({}, options.shaders), frame_case.view(size, size));
+        last.emplace_back(frame_case.make(options.voxels.tree(), options.shaders, options.voxels.renderer(),
+                                          options.voxels.volume()),
+                          frame_case.view(size, size));
         const renderer::FrameStatistics& first = last.back().first;
         first_ms.push_back(first.milliseconds);
         produce_ms.push_back(first.produce_ms);

@@ -12,6 +12,7 @@
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "reference/image.h"
+#include "renderer/open_content.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 
@@ -29,7 +30,8 @@ constexpr std::array pools = {32U << 20U, 8U << 20U};
 
 struct Setting {
     std::string varied;
-    renderer::TreeOptions tree;
+    renderer::TreeOptions tree = {};
+    renderer::RendererOptions options = {};
 };
 
 const char* name_of(renderer::Traversal traversal) {
@@ -50,24 +52,23 @@ public:
     Contest(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const renderer::View& view,
             const ChartOptions& options)
         : scene_(scene), snapshot_(snapshot), view_(view), options_(options) {
+        const renderer::RendererOptions usual = options.voxels.renderer();
         for (const auto& [n, m] : shapes) {
-            renderer::TreeOptions tree = base;
-            tree.n = n;
-            tree.m = m;
+            const Setting setting{"shape", {.n = n, .m = m}, usual};
             const bool is_base = n == base.n && m == base.m;
-            const auto ours = make(tree);
+            const auto ours = make(setting);
             for (std::size_t i = 0; i < pixel_errors.size(); ++i)
-                if (is_base || i % 2 == 1) add({"shape", tree}, ours, pixel_errors[i]);
+                if (is_base || i % 2 == 1) add(setting, ours, pixel_errors[i]);
         }
         for (const auto traversal : {renderer::Traversal::restart, renderer::Traversal::stackless}) {
-            renderer::TreeOptions tree = base;
-            tree.traversal = traversal;
-            add({"traversal", tree}, make(tree), 1.0);
+            Setting setting{"traversal", base, usual};
+            setting.options.march.traversal = traversal;
+            add(setting, make(setting), 1.0);
         }
         for (const std::size_t bytes : pools) {
-            renderer::TreeOptions tree = base;
-            tree.brick_pool_bytes = bytes;
-            add({"pool", tree}, make(tree), 1.0);
+            Setting setting{"pool", base, usual};
+            setting.options.pools.brick_bytes = bytes;
+            add(setting, make(setting), 1.0);
         }
         measure_in_turn(contenders_, options.runs, options.budget_ms);
     }
@@ -75,25 +76,27 @@ public:
     void add_rows(const std::string& name, const reference::ShadedImage& truth, Table& table) const {
         for (std::size_t i = 0; i < contenders_.size(); ++i) {
             const FrameContender& contender = contenders_[i];
-            const renderer::TreeOptions& tree = settings_[i].tree;
+            const auto& [varied, tree, options] = settings_[i];
             const PictureErrors errors = picture_errors(contender.image, truth);
-            table.rows.push_back(on_this_machine(
-                {name, settings_[i].varied, std::int64_t(contender.view.width), std::int64_t(tree.n),
-                 std::int64_t(tree.m), std::string(name_of(tree.traversal)),
-                 double(tree.brick_pool_bytes) / mebibyte, contender.view.pixel_error,
-                 median(contender.samples_ms), errors.rmse, errors.silhouette,
-                 std::int64_t(contender.converged.bricks_used),
-                 std::int64_t(contender.converged.bricks_produced), truth.milliseconds}));
+            table.rows.push_back(
+                on_this_machine({name, varied, std::int64_t(contender.view.size.width), std::int64_t(tree.n),
+                                 std::int64_t(tree.m), std::string(name_of(options.march.traversal)),
+                                 double(options.pools.brick_bytes) / mebibyte,
+                                 contender.view.detail.pixel_error, median(contender.samples_ms), errors.rmse,
+                                 errors.silhouette, std::int64_t(contender.converged.bricks_used),
+                                 std::int64_t(contender.converged.bricks_produced), truth.milliseconds}));
         }
     }
 
 private:
-    [[nodiscard]] std::shared_ptr<renderer::Renderer> make(const renderer::TreeOptions& tree) const {
-        return std::make_shared<renderer::Renderer>(scene_, snapshot_, tree, options_.shaders);
+    [[nodiscard]] std::shared_ptr<renderer::Renderer> make(const Setting& setting) const {
+        return std::make_shared<renderer::Renderer>(
+            renderer::surface_content(scene_, snapshot_, setting.tree, options_.shaders), setting.options,
+            options_.shaders);
     }
     void add(Setting setting, std::shared_ptr<renderer::Renderer> ours, double pixel_error) {
         renderer::View view = view_;
-        view.pixel_error = pixel_error;
+        view.detail.pixel_error = pixel_error;
         contenders_.emplace_back(std::move(ours), view);
         settings_.push_back(std::move(setting));
     }
@@ -124,7 +127,7 @@ Chart chart_render(const ChartOptions& options) {
         const scenes::Scene scene = scenes::load(path);
         const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
         renderer::View view;
-        view.width = view.height = size;
+        view.size = {size, size};
         view.camera = optics::framing_camera(snapshot.bounds, 1.0);
         const reference::ShadedImage truth = true_picture(scene, snapshot, view);
         Contest(scene, snapshot, view, options).add_rows(scene_name(path), truth, chart.table);

@@ -10,7 +10,8 @@ namespace cairn::bench {
 namespace {
 
 /// With these, every power of 4 times 32 is a resolution of the tree itself.
-constexpr renderer::TreeOptions tree{.n = 4, .m = 32, .brick_pool_bytes = 128U << 20U};
+constexpr renderer::TreeOptions tree{.n = 4, .m = 32};
+constexpr std::size_t pool_bytes = std::size_t(128) << 20U;
 constexpr int picture = 512;
 /// A second view through a narrow lens from the same place, whose pixels see voxels so much finer.
 constexpr double narrowed = 16.0;
@@ -18,12 +19,14 @@ constexpr double narrowed = 16.0;
 using Renderers = std::vector<std::shared_ptr<renderer::Renderer>>;
 
 Renderers renderers_of(const FrameCase& frame_case, const std::vector<int>& resolutions,
-                       const gl::ShaderSource& shaders) {
+                       const ChartOptions& options) {
     Renderers made;
     for (const int resolution : resolutions) {
         renderer::TreeOptions finer = tree;
         finer.max_resolution = resolution;
-        made.push_back(std::make_shared<renderer::Renderer>(frame_case.make(finer, shaders)));
+        made.push_back(std::make_shared<renderer::Renderer>(frame_case.make(
+            finer, options.shaders, options.voxels.renderer({.pools = {.brick_bytes = pool_bytes}}),
+            options.voxels.volume())));
     }
     return made;
 }
@@ -67,7 +70,7 @@ Chart chart_resolution(const ChartOptions& options) {
     double done = 0.0;
     for (const std::string& scene : scenes) {
         const FrameCase frame_case(scene);
-        const Renderers renderers = renderers_of(frame_case, resolutions, options.shaders);
+        const Renderers renderers = renderers_of(frame_case, resolutions, options);
         for (const bool near : {false, true}) {
             measure(frame_case, renderers, resolutions, near, options, chart.table);
             done += 0.5 / double(scenes.size());

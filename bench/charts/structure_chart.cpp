@@ -12,6 +12,7 @@
 #include "bench/peers/regular_grid.h"
 #include "bench/trials/frame_contenders.h"
 #include "bench/trials/samples.h"
+#include "renderer/open_content.h"
 #include "renderer/produce/made_fields.h"
 
 namespace cairn::bench {
@@ -27,10 +28,10 @@ constexpr double place_of_shapes = -0.5;
 
 renderer::View view_from(double place) {
     renderer::View view;
-    view.width = view.height = picture;
+    view.size = {picture, picture};
     view.camera.eye = glm::dvec3(0.0, 0.0, place - 0.5);
     view.camera.target = view.camera.eye + glm::dvec3(0.0, 0.0, 1.0);
-    view.shadow = renderer::Shadow::none;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
     return view;
 }
 
@@ -100,16 +101,19 @@ private:
                     "choose powers of two from 8 to 32768");
     }
     [[nodiscard]] renderer::TreeOptions options_of(int n, int m) const {
-        return {.n = n, .m = m, .max_resolution = resolution_, .brick_pool_bytes = 64U << 20U};
+        return {.n = n, .m = m, .max_resolution = resolution_};
     }
 
     [[nodiscard]] renderer::Renderer make(int n, int m, renderer::Traversal traversal) const {
-        renderer::TreeOptions options = options_of(n, m);
-        options.traversal = traversal;
         const auto field = std::make_shared<renderer::HollowSphere>(n, resolution_, inner, outer, 1.0);
         const renderer::TransferFunction transfer(
             {{0.0, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), optical_depth * resolution_}});
-        return {field, transfer, options, {.full_gradient = 0.0}, options_.shaders};
+        const VoxelOptions& voxels = options_.voxels;
+        return renderer::Renderer(
+            renderer::volume_content(field, transfer, options_of(n, m),
+                                     voxels.volume({.full_gradient = 0.0})),
+            voxels.renderer({.pools = {.brick_bytes = 64U << 20U}, .march = {.traversal = traversal}}),
+            options_.shaders);
     }
 
     void run(std::vector<FrameContender>& contenders, const renderer::View& view, double place,

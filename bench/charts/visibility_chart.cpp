@@ -49,7 +49,8 @@ public:
         : options_(options), case_(frame_case), size_(size), chart_(chart) {}
 
     void compare(const char* name, renderer::View view) {
-        view.shadow = renderer::Shadow::none;  // who tests boxes from the eye knows nothing of the light
+        view.shadow.kind =
+            renderer::ShadowQuality::Kind::none;  // who tests boxes from the eye knows nothing of the light
         pool_bytes_ = bytes_for_frustum(view);
         auto queries = [&](bool overlapped) {
             return [=, this] { return of(bricks(view)->by_queries({.overlapped = overlapped})); };
@@ -66,11 +67,13 @@ public:
 
 private:
     [[nodiscard]] Outcome by_rays(const renderer::View& view) const {
-        FrameContender contender(case_.make(tree(), options_.shaders), view);
-        const renderer::FrameStatistics first = contender.first;
-        (void)frame_ms(*contender.renderer, view);
-        return {first.bricks_produced, contender.renderer->statistics().bricks_used, 0, 0, first.passes,
-                first.milliseconds};
+        const FrameContender contender(
+            case_.make(tree(), options_.shaders,
+                       options_.voxels.renderer({.pools = {.brick_bytes = pool_bytes_}})),
+            view);
+        const renderer::FrameStatistics& first = contender.first;
+        const renderer::FrameStatistics last = marched_frame(*contender.renderer, view).statistics;
+        return {first.bricks_produced, last.bricks_used, 0, 0, first.passes, first.milliseconds};
     }
 
     [[nodiscard]] std::unique_ptr<VisibleBricks> bricks(const renderer::View& view) const {
@@ -84,16 +87,12 @@ private:
                 found.queries,         found.batches,     found.milliseconds};
     }
 
-    [[nodiscard]] renderer::TreeOptions tree() const {
-        renderer::TreeOptions options = case_.fitted({});
-        options.brick_pool_bytes = pool_bytes_;
-        return options;
-    }
+    [[nodiscard]] renderer::TreeOptions tree() const { return case_.fitted(options_.voxels.tree()); }
 
     /// A pool for all that could be produced, if there can be one; no larger, since drivers clear them.
     [[nodiscard]] std::size_t bytes_for_frustum(const renderer::View& view) const {
-        const renderer::TreeShape shape = case_.shape({});
-        const std::unique_ptr<renderer::Content> content = case_.content({}, options_.shaders);
+        const renderer::TreeShape shape = case_.shape(tree());
+        const std::unique_ptr<renderer::Content> content = case_.content(tree(), options_.shaders);
         const renderer::BrickPool sample(shape, content->channels(), sample_pool_bytes);
         const std::size_t slot_bytes = sample.size_bytes() / std::size_t(sample.slot_count());
         const std::size_t tiles = tiles_in_frustum(*content, shape, view);

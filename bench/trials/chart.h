@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/plots/table.h"
+#include "bench/trials/voxel_options.h"
 #include "gl/shader_source.h"
 
 namespace cairn::bench {
@@ -28,6 +29,7 @@ struct ChartOptions {
     double budget_ms = 3000.0;
     /// Keeps what Embree found of soft lights, which takes long; none: found anew.
     std::optional<std::filesystem::path> truth_cache;
+    VoxelOptions voxels;
     gl::ShaderSource shaders;
     /// Called with the share done, in [0, 1]; may be empty.
     std::function<void(double)> progress;

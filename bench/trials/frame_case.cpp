@@ -5,16 +5,14 @@
 #include <utility>
 #include <variant>
 
+#include "base/error.h"
 #include "bench/trials/real_scenes.h"
 #include "renderer/produce/dense_field.h"
-#include "renderer/produce/fractal_content.h"
 #include "renderer/produce/made_fields.h"
-#include "renderer/produce/surface_content.h"
 #include "renderer/produce/volume_content.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "scenes/volume/volume.h"
-#include "voxelizer/surface/surface.h"
 
 namespace cairn::bench {
 namespace {
@@ -26,8 +24,6 @@ constexpr std::int64_t copy_resolution = 256;
 constexpr double optical_depth = 1.0;
 /// What does not show of a scan, as a share of its densities.
 constexpr double scan_empty = 0.3;
-/// 3^13, the most that rays can count. (Crassin et al. 2008 went to 4.8 million, 3^14.)
-constexpr int sponge_resolution = 1594323;
 
 /// @param empty  density that does not show; 0 where voxels that are coarse and thin are to show as such.
 renderer::TransferFunction opaque(double empty, double voxel_size) {
@@ -104,12 +100,12 @@ Cell FrameCase::triangles() const {
 }
 
 renderer::TreeOptions FrameCase::fitted(const renderer::TreeOptions& tree) const {
-    renderer::TreeOptions options = tree;
-    if (!data_->is_sponge()) return options;
-    options.n = 3;
-    options.m = 27;
-    options.max_resolution = sponge_resolution;
-    return options;
+    if (!data_->is_sponge()) return tree;
+    const renderer::TreeOptions usual = renderer::usual_tree("builtin:sponge");
+    if (tree.n == usual.n) return {.n = tree.n, .m = tree.m, .max_resolution = usual.max_resolution};
+    if (tree.n != renderer::TreeOptions{}.n || tree.m != renderer::TreeOptions{}.m)
+        throw Error(Fault::usage, "tree", "the sponge is cut in thirds", "choose N = 3");
+    return usual;
 }
 
 FrameCase::Shown FrameCase::shown_field(const renderer::TreeOptions& tree) const {
@@ -131,11 +127,10 @@ FrameCase::Shown FrameCase::shown_field(const renderer::TreeOptions& tree) const
     return {std::move(field), opaque(0.0, 1.0 / double(resolution))};
 }
 
-renderer::Renderer FrameCase::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders) const {
-    if (const Data::AtRest* const rest = data_->scene()) return {rest->scene, rest->snapshot, tree, shaders};
-    if (data_->is_sponge()) return {content(tree, shaders), fitted(tree), shaders};
-    Shown shown = shown_field(tree);
-    return {std::move(shown.field), shown.transfer, tree, {}, shaders};
+renderer::Renderer FrameCase::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders,
+                                   const renderer::RendererOptions& options,
+                                   const renderer::VolumeOptions& volume) const {
+    return renderer::Renderer(content(tree, shaders, volume), options, shaders);
 }
 
 renderer::TreeShape FrameCase::shape(const renderer::TreeOptions& tree) const {
@@ -145,27 +140,18 @@ renderer::TreeShape FrameCase::shape(const renderer::TreeOptions& tree) const {
 }
 
 std::unique_ptr<renderer::Content> FrameCase::content(const renderer::TreeOptions& tree,
-                                                      const gl::ShaderSource& shaders) const {
-    if (const Data::AtRest* const rest = data_->scene()) {
-        const renderer::TreeShape shape = renderer::tree_shape_of(tree);
-        const voxelizer::Grid grid = voxelizer::grid_around(rest->snapshot.bounds, shape.resolution());
-        const voxelizer::Surface surface =
-            voxelizer::build_surface(rest->scene, rest->snapshot, grid, {.attributes = true});
-        return std::make_unique<renderer::SurfaceContent>(shape, surface, shaders);
-    }
-    if (data_->is_sponge()) {
-        return std::make_unique<renderer::FractalContent>(renderer::tree_shape_of(fitted(tree)), shaders);
-    }
+                                                      const gl::ShaderSource& shaders,
+                                                      const renderer::VolumeOptions& volume) const {
+    if (const Data::AtRest* const rest = data_->scene())
+        return renderer::surface_content(rest->scene, rest->snapshot, tree, shaders);
+    if (data_->is_sponge()) return renderer::fractal_content(fitted(tree), shaders);
     Shown shown = shown_field(tree);
-    const renderer::VolumeShape shape =
-        renderer::make_volume_shape(shown.field->frame(), tree.n, tree.m, tree.max_resolution);
-    return std::make_unique<renderer::VolumeContent>(shape, std::move(shown.field), shown.transfer.visible());
+    return renderer::volume_content(std::move(shown.field), shown.transfer, tree, volume);
 }
 
 renderer::View FrameCase::view(int width, int height) const {
     renderer::View view;
-    view.width = width;
-    view.height = height;
+    view.size = {width, height};
     view.camera = optics::framing_camera(bounds_, double(width) / height);
     return view;
 }

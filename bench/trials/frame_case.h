@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bench/plots/table.h"
+#include "renderer/open_content.h"
 #include "renderer/renderer.h"
 
 namespace cairn::bench {
@@ -26,13 +27,16 @@ public:
     [[nodiscard]] Cell triangles() const;  ///< nothing for a volume
     /// The tree that make() and content() take for these options: others for the sponge alone.
     [[nodiscard]] renderer::TreeOptions fitted(const renderer::TreeOptions& tree) const;
-    [[nodiscard]] renderer::Renderer make(const renderer::TreeOptions& tree,
-                                          const gl::ShaderSource& shaders) const;
+    /// @throws Error (Fault::usage) for a tree of the sponge whose N is neither 3 nor the usual one.
+    [[nodiscard]] renderer::Renderer make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders,
+                                          const renderer::RendererOptions& options = {},
+                                          const renderer::VolumeOptions& volume = {}) const;
     /// The shape of that tree, no finer than a volume's voxels.
     [[nodiscard]] renderer::TreeShape shape(const renderer::TreeOptions& tree) const;
     /// What such a renderer shows, for those who look at it by other means.
-    [[nodiscard]] std::unique_ptr<renderer::Content> content(const renderer::TreeOptions& tree,
-                                                             const gl::ShaderSource& shaders) const;
+    [[nodiscard]] std::unique_ptr<renderer::Content> content(
+        const renderer::TreeOptions& tree, const gl::ShaderSource& shaders,
+        const renderer::VolumeOptions& volume = {}) const;
     /// A view of the whole.
     [[nodiscard]] renderer::View view(int width, int height) const;
 

@@ -7,10 +7,10 @@
 
 namespace cairn::bench {
 
-double frame_ms(renderer::Renderer& renderer, const renderer::View& view) {
+renderer::Frame marched_frame(renderer::Renderer& renderer, const renderer::View& view,
+                              const renderer::Request& request) {
     renderer.forget_picture();
-    (void)renderer.render(view);
-    return renderer.statistics().milliseconds;
+    return renderer.render(view, request);
 }
 
 FrameContender::FrameContender(renderer::Renderer made, const renderer::View& looks)
@@ -18,17 +18,17 @@ FrameContender::FrameContender(renderer::Renderer made, const renderer::View& lo
 
 FrameContender::FrameContender(std::shared_ptr<renderer::Renderer> made, const renderer::View& looks)
     : renderer(std::move(made)), view(looks) {
-    first_ms = frame_ms(*renderer, view);
-    first = renderer->statistics();
+    first = marched_frame(*renderer, view).statistics;
+    first_ms = first.milliseconds;
 }
 
 void measure_in_turn(std::vector<FrameContender>& contenders, int runs, double budget_ms) {
     double spent_ms = 0.0;
     for (int run = 0; run < runs && spent_ms <= budget_ms * double(contenders.size()); ++run) {
         for (FrameContender& contender : contenders) {
-            contender.renderer->forget_picture();
-            contender.image = contender.renderer->render(contender.view);
-            contender.converged = contender.renderer->statistics();
+            renderer::Frame frame = marched_frame(*contender.renderer, contender.view);
+            contender.image = std::move(frame.image);
+            contender.converged = frame.statistics;
             contender.samples_ms.push_back(contender.converged.milliseconds);
             spent_ms += contender.samples_ms.back();
         }

@@ -8,8 +8,9 @@
 
 namespace cairn::bench {
 
-/// Marches a frame, whatever was shown before. @return milliseconds
-double frame_ms(renderer::Renderer& renderer, const renderer::View& view);
+/// A frame that is marched, whatever was shown before.
+renderer::Frame marched_frame(renderer::Renderer& renderer, const renderer::View& view,
+                              const renderer::Request& request = {});
 
 /// Renderers whose frames are measured in turn, so that their ratios hold when the machine's speed drifts.
 struct FrameContender {

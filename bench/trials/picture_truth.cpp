@@ -16,7 +16,7 @@ reference::ShadedImage true_picture(const scenes::Scene& scene, const scenes::Sn
     shading.light_color = view.light.color;
     shading.ambient = view.light.ambient;
     shading.background = view.background;
-    shading.shadows = view.shadow == renderer::Shadow::hard;
+    shading.shadows = view.shadow.kind != renderer::ShadowQuality::Kind::none;
     return reference::ImageTracer(scene, snapshot)
         .shade(view.camera, view.light, shading, view.width, view.height, samples_per_side);
 }

@@ -43,9 +43,10 @@ ShadowRun run_voxels(const ShadowCase& shadow_case, std::optional<int> resolutio
     std::shared_ptr<renderer::Renderer>& kept = shadow_case.voxels[resolution];
     const bool is_first = kept == nullptr;
     if (is_first) {
-        renderer::TreeOptions tree = resolution ? tree_of(*resolution) : renderer::TreeOptions{};
-        if (resolution) tree.brick_pool_bytes = finest_pool_bytes * std::size_t(*resolution);
-        kept = shadowing_renderer(shadow_case.scene, tree, shadow_case.options.shaders);
+        const renderer::TreeOptions tree = resolution ? tree_of(*resolution) : renderer::TreeOptions{};
+        renderer::RendererOptions options = shadow_case.options.voxels.renderer();
+        if (resolution) options.pools.brick_bytes = finest_pool_bytes * std::size_t(*resolution);
+        kept = shadowing_renderer(shadow_case.scene, tree, options, shadow_case.options.shaders);
     }
     ShadowRun run = shadow_frame(*kept, view);
     run.from_nothing = is_first;
@@ -55,7 +56,7 @@ ShadowRun run_voxels(const ShadowCase& shadow_case, std::optional<int> resolutio
 void add_voxel_rays(const ShadowCase& shadow_case, Contenders& all) {
     const auto add = [&](const char* varied, int rays, std::optional<int> resolution) {
         renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, rays);
-        if (resolution) view.pixel_error = always_finest;
+        if (resolution) view.detail.pixel_error = always_finest;
         all.push_back(
             {.method = "voxel-rays",
              .setting = {.varied = varied, .rays = rays, .resolution = resolution},
@@ -77,8 +78,8 @@ void add_voxel_cones(const ShadowCase& shadow_case, Contenders& all) {
     if (!shadow_case.is_soft) return;
     const auto add = [&](const char* varied, int cones, int resolution) {
         renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, cones);
-        view.shadow_cones = true;
-        view.pixel_error = always_finest;
+        view.shadow.kind = renderer::ShadowQuality::Kind::cones;
+        view.detail.pixel_error = always_finest;
         all.push_back(
             {.method = "voxel-cones",
              .setting = {.varied = varied, .rays = cones, .resolution = resolution},
