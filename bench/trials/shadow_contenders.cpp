@@ -8,13 +8,14 @@
 
 #include "bench/peers/pcf_shadow.h"
 #include "reference/area_light.h"
-#include "renderer/soft_shadow.h"
+#include "renderer/shadow_renderer.h"
 
 namespace cairn::bench {
 namespace {
 
 using Contenders = std::vector<ShadowContender>;
 using Clock = std::chrono::steady_clock;
+using renderer::ShadowMethod;
 using Rays = reference::ImageTracer::Rays;
 
 constexpr int own_resolution = 512;
@@ -40,17 +41,17 @@ double milliseconds_since(Clock::time_point start) {
 /// Pools are made when they are first needed, and shared by all that goes through the same voxels.
 ShadowRun run_voxels(const ShadowCase& shadow_case, std::optional<int> resolution,
                      const renderer::View& view) {
-    std::shared_ptr<renderer::Renderer>& kept = shadow_case.voxels[resolution];
-    const bool is_first = kept == nullptr;
-    if (is_first) {
-        const renderer::TreeOptions tree = resolution ? tree_of(*resolution) : renderer::TreeOptions{};
-        renderer::RendererOptions options = shadow_case.options.voxels.renderer();
-        if (resolution) options.pools.brick_bytes = finest_pool_bytes * std::size_t(*resolution);
-        kept = shadowing_renderer(shadow_case.scene, tree, options, shadow_case.options.shaders);
+    std::unique_ptr<ShadowFrames>& kept = shadow_case.voxels[resolution];
+    if (!kept) {
+        renderer::ShadowOptions options{.renderer = shadow_case.options.voxels.renderer()};
+        if (resolution) {
+            options.tree = tree_of(*resolution);
+            options.renderer.pools.brick_bytes = finest_pool_bytes * std::size_t(*resolution);
+        }
+        kept = std::make_unique<ShadowFrames>(ShadowMethod::voxel, shadow_case.scene, options,
+                                              shadow_case.options.shaders);
     }
-    ShadowRun run = shadow_frame(*kept, view);
-    run.from_nothing = is_first;
-    return run;
+    return kept->run(view);
 }
 
 void add_voxel_rays(const ShadowCase& shadow_case, Contenders& all) {
@@ -92,17 +93,19 @@ void add_voxel_cones(const ShadowCase& shadow_case, Contenders& all) {
 }
 
 void add_pyramid(const ShadowCase& shadow_case, Contenders& all) {
-    const auto made = std::make_shared<std::map<int, ShadowFrames>>();
+    const auto made = std::make_shared<std::map<int, std::unique_ptr<ShadowFrames>>>();
     const auto add = [&](const char* varied, int rays, int resolution) {
         const renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, rays);
         all.push_back({.method = "pyramid",
                        .setting = {.varied = varied, .rays = rays, .resolution = resolution},
                        .run = [&shadow_case, made, resolution, view] {
-                           ShadowFrames& frames = (*made)[resolution];
+                           std::unique_ptr<ShadowFrames>& frames = (*made)[resolution];
                            if (!frames)
-                               frames = pyramid_frames(shadow_case.scene, {.resolution = resolution},
-                                                       shadow_case.options.shaders);
-                           return frames(view);
+                               frames = std::make_unique<ShadowFrames>(
+                                   ShadowMethod::pyramid, shadow_case.scene,
+                                   renderer::ShadowOptions{.pyramid = {.resolution = resolution}},
+                                   shadow_case.options.shaders);
+                           return frames->run(view);
                        }});
     };
     for (const int resolution : pyramid_resolutions)
@@ -124,32 +127,24 @@ const char* name_of(renderer::ShadowFormat format) {
     return "fp32";
 }
 
-ShadowRun run_map(std::shared_ptr<renderer::SoftShadowRenderer>& made, const ShadowCase& shadow_case,
-                  const renderer::SoftShadowOptions& map) {
-    const ShadowScene& scene = shadow_case.scene;
-    const bool is_first = made == nullptr;
-    if (is_first)
-        made = std::make_shared<renderer::SoftShadowRenderer>(scene.scene(), scene.all(),
-                                                              scene.caster_nodes(), scene.ground_nodes(), map,
-                                                              shadow_case.options.shaders);
-    renderer::SoftShadowPicture picture = made->render(scene.view(shadow_case.width, shadow_case.height, 1));
-    return {made->map().statistics().milliseconds, std::move(picture.visible), is_first, is_first};
-}
-
 void add_soft_shadow_maps(const ShadowCase& shadow_case, Contenders& all) {
     if (!shadow_case.is_soft) return;
+    const renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, 1);
     const auto add = [&](const char* varied, const renderer::SoftShadowOptions& map) {
         const bool is_one = map.passes == renderer::ShadowPasses::one;
-        all.push_back(
-            {.method = "soft-shadow-map",
-             .setting = {.varied = varied,
-                         .map_size = map.receiver_size,
-                         .passes = is_one ? "one" : "two",
-                         .format = name_of(map.format)},
-             .ground_only = true,
-             .run = [&shadow_case, map, made = std::shared_ptr<renderer::SoftShadowRenderer>()]() mutable {
-                 return run_map(made, shadow_case, map);
-             }});
+        all.push_back({.method = "soft-shadow-map",
+                       .setting = {.varied = varied,
+                                   .map_size = map.receiver_size,
+                                   .passes = is_one ? "one" : "two",
+                                   .format = name_of(map.format)},
+                       .ground_only = true,
+                       .run = [&shadow_case, map, view, made = std::shared_ptr<ShadowFrames>()]() mutable {
+                           if (!made)
+                               made = std::make_shared<ShadowFrames>(
+                                   ShadowMethod::soft_shadow_map, shadow_case.scene,
+                                   renderer::ShadowOptions{.map = map}, shadow_case.options.shaders);
+                           return made->run(view);
+                       }});
     };
     for (const auto passes : {renderer::ShadowPasses::one, renderer::ShadowPasses::two}) {
         const char* const varied =

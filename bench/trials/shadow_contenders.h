@@ -18,7 +18,7 @@ namespace cairn::bench {
 
 /// What voxels of one scene are kept in, from one case to the next: by the voxels a side that rays meet, or
 /// by what a pixel shows.
-using KeptVoxels = std::map<std::optional<int>, std::shared_ptr<renderer::Renderer>>;
+using KeptVoxels = std::map<std::optional<int>, std::unique_ptr<ShadowFrames>>;
 
 /// What all contenders are asked: what of the light arrives at each pixel of a picture.
 struct ShadowCase {

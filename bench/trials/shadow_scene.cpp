@@ -79,6 +79,11 @@ ShadowScene::ShadowScene(const std::string& path, bool with_ground)
     casters_ = scenes::part_of(all_, caster_nodes_);
 }
 
+renderer::ShadowScene ShadowScene::shadow_scene(renderer::ShadowMethod method) const {
+    if (method != renderer::ShadowMethod::soft_shadow_map) return {scene_, all_};
+    return {scene_, all_, caster_nodes_, ground_nodes_};
+}
+
 renderer::View ShadowScene::view(int width, int height, int rays) const {
     renderer::View view;
     view.size = {width, height};
