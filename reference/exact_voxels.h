@@ -28,8 +28,8 @@ public:
     [[nodiscard]] voxelizer::BitGrid in(const voxelizer::Region& region) const;
 
 private:
-    struct Parts;
-    std::unique_ptr<Parts> parts_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 /// The same for one region alone.

@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "optics/srgb.h"
 #include "reference/traced_scene.h"
 
 namespace cairn::reference {
@@ -227,11 +228,6 @@ glm::vec3 shade(const TracedScene& scene, const PictureRays& rays, const Shading
     return look.color_at(at) * shading.light_color * (sky + (1.0F - shading.ambient) * facing);
 }
 
-float srgb_from_linear(float c) {
-    const float clamped = std::min(std::max(c, 0.0F), 1.0F);
-    return clamped > 0.0031308F ? 1.055F * std::pow(clamped, 1.0F / 2.4F) - 0.055F : 12.92F * clamped;
-}
-
 }  // namespace
 
 ShadedImage ImageTracer::shade(const optics::Camera& camera, const optics::Light& light,
@@ -258,7 +254,8 @@ ShadedImage ImageTracer::shade(const optics::Camera& camera, const optics::Light
                 sum += share * (light_seen.x < 0.0F ? shading.background : light_seen);
             }
             const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            image.srgb[p] = {srgb_from_linear(sum.r), srgb_from_linear(sum.g), srgb_from_linear(sum.b)};
+            image.srgb[p] = {optics::srgb_from_linear(sum.r), optics::srgb_from_linear(sum.g),
+                             optics::srgb_from_linear(sum.b)};
             image.coverage[p] = covered;
         }
     });

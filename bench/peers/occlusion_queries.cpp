@@ -20,10 +20,10 @@ namespace {
 
 constexpr std::size_t node_pool_bytes = std::size_t(32) << 20U;
 
-renderer::MarchKind saturating() {
-    renderer::MarchKind kind;
-    kind.primary = "bench/saturate.comp.glsl";
-    return kind;
+renderer::ContentProgram saturating() {
+    renderer::ContentProgram program;
+    program.primary = "bench/saturate.comp.glsl";
+    return program;
 }
 
 interop::MarchView marched_view(const renderer::View& view, const renderer::Content& content,
@@ -33,15 +33,16 @@ interop::MarchView marched_view(const renderer::View& view, const renderer::Cont
         throw Error(Fault::usage, "visibility", "a volume has no depth at which all rays end",
                     "choose a scene of surfaces");
     }
-    if (renderer::Marcher::band_rows(view.width, view.height) < view.height) {
+    if (renderer::Marcher::band_rows(view.size.width, view.size.height) < view.size.height) {
         throw Error(Fault::usage, "visibility", "the picture is too large to be marched at once",
                     "choose fewer pixels");
     }
     renderer::View primary = view;
-    primary.shadow = renderer::Shadow::none;
+    primary.shadow.kind = renderer::ShadowQuality::Kind::none;
     interop::MarchView marched = renderer::march_view(primary, content.grid(), shape, nullptr);
     marched.surface_color = glm::vec4(content.uniform_color(), 1.0F);
-    marched.band = glm::ivec4(0, view.height, SHOW_SURFACE, int(renderer::background_pixel(view.background)));
+    marched.band =
+        glm::ivec4(0, view.size.height, SHOW_SURFACE, int(renderer::background_pixel(view.background)));
     return marched;
 }
 
@@ -58,7 +59,7 @@ VisibleBricks::VisibleBricks(std::unique_ptr<renderer::Content> content, const r
                              const renderer::View& view, std::size_t brick_pool_bytes,
                              const gl::ShaderSource& shaders)
     : view_(marched_view(view, *content, shape)),
-      cache_(shape, std::move(content), {node_pool_bytes, brick_pool_bytes}),
+      cache_(std::move(content), {node_pool_bytes, brick_pool_bytes}),
       test_(view_, shape),
       saturate_(shape, cache_.content().has_color(), {}, shaders, saturating()),
       picture_(shape, cache_.content().has_color(), {}, shaders),

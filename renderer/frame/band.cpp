@@ -11,10 +11,10 @@ namespace cairn::renderer {
 
 Band make_band(const View& view, Content& content, const TreeShape& shape) {
     Band band;
-    band.is_blended = view.level_of_detail == LevelOfDetail::blended;
+    band.is_blended = view.detail.kind == LevelOfDetail::Kind::blended;
     if (band.is_blended && shape.mips == 0) {
         throw Error(Fault::usage, "view", "levels of detail cannot be blended without mip levels",
-                    "make the renderer of a surface with TreeOptions::mips");
+                    "make the content a surface, with TreeOptions::mips");
     }
     const voxelizer::Grid& grid = content.grid();
     const Place eye = place_of(view, view.camera.eye, grid);

@@ -14,23 +14,21 @@
 namespace cairn::renderer {
 namespace {
 
-MarchKind with_content(MarchKind kind, const Content& content) {
-    if (content.has_constant()) kind.defines.emplace_back("HAS_CONSTANT", "1");
-    if (content.has_low_frequency()) kind.defines.emplace_back("HAS_FINAL", "1");
-    return kind;
+ContentProgram program_of(const Content& content) {
+    ContentProgram program = content.program();
+    if (content.has_constant()) program.defines.emplace_back("HAS_CONSTANT", "1");
+    if (content.has_low_frequency()) program.defines.emplace_back("HAS_FINAL", "1");
+    return program;
 }
 
 }  // namespace
 
-FrameLoop::FrameLoop(const TreeShape& shape, std::unique_ptr<Content> content, const TreeOptions& options,
-                     const gl::ShaderSource& shaders, MarchKind kind)
-    : cache_(shape, std::move(content),
-             {options.node_pool_bytes, options.brick_pool_bytes, options.brick_cache_bytes}),
-      marcher_(shape, cache_.content().has_color(),
-               {options.traversal, options.block_starts, options.query_capacity, options.tile_queries},
-               shaders, with_content(std::move(kind), cache_.content())),
+FrameLoop::FrameLoop(std::unique_ptr<Content> content, const PoolSizes& pools, const MarchOptions& options,
+                     const gl::ShaderSource& shaders)
+    : cache_(std::move(content), pools),
+      marcher_(cache_.shape(), cache_.content().has_color(), options, shaders, program_of(cache_.content())),
       tile_queries_(options.tile_queries) {
-    if (options.mips && !cache_.content().fills_mips()) {
+    if (cache_.shape().mips != 0 && !cache_.content().fills_mips()) {
         throw Error(Fault::usage, "tree", "the bricks of this content have no mip levels",
                     "leave the mips and blended levels of detail to surfaces");
     }
@@ -43,13 +41,13 @@ void FrameLoop::set_mix(const Mix& mix) {
 
 void FrameLoop::check_request(const View& view, Rows rows) const {
     check_view(view, cache_.shape());
-    if (rows.first < 0 || rows.count < 1 || rows.count > view.height - rows.first) {
+    if (rows.first < 0 || rows.count < 1 || rows.count > view.size.height - rows.first) {
         throw Error(
             Fault::usage, "view",
-            fmt::format("{} rows from row {} of a picture of {}", rows.count, rows.first, view.height),
+            fmt::format("{} rows from row {} of a picture of {}", rows.count, rows.first, view.size.height),
             "ask for rows that the picture has");
     }
-    if (view.shadow_cones && !marches_surfaces())
+    if (view.shadow.kind == ShadowQuality::Kind::cones && !marches_surfaces())
         throw Error(Fault::usage, "view", "shadow cones through a volume", "send it shadow rays");
 }
 
@@ -69,8 +67,8 @@ optics::Image FrameLoop::render(const View& view, Rows rows, int shown,
     return render_bands(view, rows, shown, [&](int row) {
         if (!progress) return Goal::nothing_missing();
         return Goal::nothing_missing([&, row](double done) {
-            const double before = double(view.width) * (row - rows.first);
-            progress((before + done) / (double(view.width) * rows.count));
+            const double before = double(view.size.width) * (row - rows.first);
+            progress((before + done) / (double(view.size.width) * rows.count));
         });
     });
 }
@@ -104,7 +102,7 @@ optics::Image FrameLoop::render_bands(const View& view, Rows rows, int shown,
     if (image.rgba.empty()) {
         const std::uint32_t background = shows_light ? std::bit_cast<std::uint32_t>(float(SHOWN_NOTHING))
                                                      : background_pixel(view.background);
-        image = {view.width, rows.count, {}};
+        image = {view.size.width, rows.count, {}};
         march_bands(band, rows, shown, background, goal_of, image);
         if (!shows_light && statistics_.converged) picture_.keep(view, rows, image);
     }
@@ -235,7 +233,7 @@ std::uint64_t FrameLoop::prefetch(const View& next, Clock::time_point deadline) 
     Band band = make_band(thin, cache_.content(), cache_.shape());
     if (cache_.is_empty() || Clock::now() >= deadline) return 0;
     const std::uint64_t before = cache_.counters().bricks_produced;
-    set_rows(band, {0, thin.height}, int(thin.show), background_pixel(thin.background));
+    set_rows(band, {0, thin.size.height}, int(thin.show), background_pixel(thin.background));
     cache_.keep_since(frame_since_);
     (void)run(band, Goal::ahead_until(deadline));
     const std::uint64_t produced = cache_.counters().bricks_produced - before;

@@ -14,7 +14,6 @@
 #include "renderer/frame/band.h"
 #include "renderer/frame/frame_statistics.h"
 #include "renderer/frame/kept_picture.h"
-#include "renderer/frame/tree_options.h"
 #include "renderer/march/marcher.h"
 #include "renderer/mesh/mix.h"
 #include "renderer/pool/round.h"
@@ -57,11 +56,10 @@ struct Outcome {
 /// Needs the context that was current at its construction.
 class FrameLoop {
 public:
-    /// @param content  made for the shape, which is that of the options.
     /// @throws Error  Fault::usage for a pool or a query capacity that cannot work, and for mips that the
-    /// content does not fill; Fault::memory when it does not fit.
-    FrameLoop(const TreeShape& shape, std::unique_ptr<Content> content, const TreeOptions& options,
-              const gl::ShaderSource& shaders, MarchKind kind = {});
+    /// content does not fill; Fault::memory when the pools do not fit.
+    FrameLoop(std::unique_ptr<Content> content, const PoolSizes& pools, const MarchOptions& options,
+              const gl::ShaderSource& shaders);
 
     /// For all pictures from now on; an empty one for voxels alone.
     void set_mix(const Mix& mix);

@@ -31,17 +31,17 @@ std::vector<TileQuery> most_rays_first(std::span<const TileQuery> queries, const
 
 }  // namespace
 
-TileCache::TileCache(const TreeShape& shape, std::unique_ptr<Content> content, const CacheSizes& sizes)
+TileCache::TileCache(std::unique_ptr<Content> content, const PoolSizes& sizes)
     : content_(std::move(content)),
-      pool_(shape, content_->channels(), sizes.brick_pool_bytes),
-      tree_(shape, pool_.slot_count(), sizes.node_pool_bytes, content_->oracle().child_mask(Tile{}),
+      pool_(content_->shape(), content_->channels(), sizes.brick_bytes),
+      tree_(content_->shape(), pool_.slot_count(), sizes.node_bytes, content_->oracle().child_mask(Tile{}),
             content_->has_constant()) {
-    if (sizes.brick_cache_bytes == 0) return;
+    if (sizes.cache_bytes == 0) return;
     if (content_->has_low_frequency()) {
         throw Error(Fault::usage, "brick cache", "it cannot tell which tiles of this content are final",
                     "leave it out");
     }
-    cache_.emplace(pool_, sizes.brick_cache_bytes);
+    cache_.emplace(pool_, sizes.cache_bytes);
     tree_.record_evictions(true);
 }
 

@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "renderer/pool/brick_cache.h"
 #include "renderer/pool/brick_pool.h"
+#include "renderer/pool/pool_sizes.h"
 #include "renderer/pool/round.h"
 #include "renderer/pool/tree.h"
 #include "renderer/produce/batch_pace.h"
@@ -18,13 +19,6 @@
 
 namespace cairn::renderer {
 
-/// Bounds of what a TileCache holds.
-struct CacheSizes {
-    std::size_t node_pool_bytes = 8U << 20U;
-    std::size_t brick_pool_bytes = 256U << 20U;
-    std::size_t brick_cache_bytes = 0;  ///< main memory for bricks that had to leave the pool; 0: none
-};
-
 /// The tiles of a content that are there to be marched, and the way to those that are not: it answers tile
 /// queries, whoever asks (Crassin et al. 2008, sections 4 and 6). Queries are those of one round: an entry
 /// that has since been given to another tile is left alone.
@@ -32,7 +26,7 @@ class TileCache {
 public:
     /// @throws Error (Fault::usage) for a pool that is too small to work, and for main memory behind a pool
     /// of content whose final tiles it could not tell (Content::has_low_frequency()).
-    TileCache(const TreeShape& shape, std::unique_ptr<Content> content, const CacheSizes& sizes);
+    TileCache(std::unique_ptr<Content> content, const PoolSizes& sizes);
     TileCache(const TileCache&) = delete;
     TileCache& operator=(const TileCache&) = delete;
     TileCache(TileCache&&) = delete;

@@ -90,8 +90,8 @@ gl::Program build_on_march(const gl::Defines& defines, const std::string& added)
 }
 
 Prober::Prober(const renderer::TreeShape& shape, std::size_t brick_pool_bytes, std::size_t node_pool_bytes)
-    : cache_(shape, std::make_unique<renderer::FractalContent>(shape),
-             {.node_pool_bytes = node_pool_bytes, .brick_pool_bytes = brick_pool_bytes}),
+    : cache_(std::make_unique<renderer::FractalContent>(shape),
+             {.node_bytes = node_pool_bytes, .brick_bytes = brick_pool_bytes}),
       program_(build(shape)),
       windows_(sizeof(glm::ivec4) + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows"),
       queries_(QUERY_CAPACITY, renderer::TileQueries::list, shape.has_windows(), {}) {}

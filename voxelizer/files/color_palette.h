@@ -9,9 +9,6 @@
 
 namespace cairn::voxelizer {
 
-/// 8 bits a channel, sRGB.
-[[nodiscard]] glm::u8vec3 srgb_from_linear(const glm::vec3& linear);
-
 /// Finds at most 255 colours for many. Up to 255 different ones are kept as they are; more are gathered in
 /// 64^3 cells of the sRGB cube, which are cut by their median (Heckbert 1982) and then moved to the means of
 /// what is nearest to them (Lloyd 1982). The same whatever order the colours come in. Memory: 8 MiB.

@@ -20,25 +20,24 @@ using renderer::Clock;
 using renderer::FrameLoop;
 using renderer::FrameStatistics;
 using renderer::Rows;
-using renderer::TreeOptions;
 using renderer::View;
 
 class FrameLoopTest : public GlTest {
 protected:
     FrameLoopTest() {
-        view_.width = 60;
-        view_.height = 44;
+        view_.size.width = 60;
+        view_.size.height = 44;
         view_.camera.eye = {1.9, 1.4, 2.1};
         view_.camera.target = {0.5, 0.4, 0.5};
         view_.light.towards = {0.4, 1.0, 0.3};
     }
     static std::unique_ptr<FrameLoop> make() {
-        const TreeOptions options{.n = 4, .m = 8, .max_resolution = 512, .brick_pool_bytes = 64U << 20U};
-        const renderer::TreeShape shape = renderer::tree_shape_of(options);
-        return std::make_unique<FrameLoop>(shape, std::make_unique<BoxContent>(shape, BoxOptions{}), options,
-                                           gl::ShaderSource{});
+        const renderer::TreeShape shape = renderer::make_tree_shape(4, 8, 512);
+        return std::make_unique<FrameLoop>(std::make_unique<BoxContent>(shape, BoxOptions{}),
+                                           renderer::PoolSizes{.brick_bytes = 64U << 20U},
+                                           renderer::MarchOptions{}, gl::ShaderSource{});
     }
-    [[nodiscard]] Rows all() const { return {0, view_.height}; }
+    [[nodiscard]] Rows all() const { return {0, view_.size.height}; }
     static Clock::time_point in_an_hour() { return Clock::now() + std::chrono::hours(1); }
     static Clock::time_point an_hour_ago() { return Clock::now() - std::chrono::hours(1); }
 
@@ -72,7 +71,7 @@ TEST_F(FrameLoopTest, WhatIsAheadIsThereWhenTheViewComes) {
     while (loop->prefetch_finer(in_an_hour()).more) {
     }
     View finer = view_;
-    finer.pixel_error /= 4;
+    finer.detail.pixel_error /= 4;
     (void)loop->render(finer, all(), SHOW_SURFACE);
     const std::uint64_t after_prefetching = loop->statistics().bricks_produced;
     const auto other = make();

@@ -39,11 +39,11 @@ protected:
         return std::size_t(blocks) * std::size_t(shape().child_count()) * sizeof(interop::NodeEntry);
     }
 
-    TileCache& make(const renderer::CacheSizes& sizes = {.brick_pool_bytes = 8U << 20U},
+    TileCache& make(const renderer::PoolSizes& sizes = {.brick_bytes = 8U << 20U},
                     const BoxOptions& options = {.constant = false}) {
         auto content = std::make_unique<BoxContent>(shape(), options);
         content_ = content.get();
-        cache_ = std::make_unique<TileCache>(shape(), std::move(content), sizes);
+        cache_ = std::make_unique<TileCache>(std::move(content), sizes);
         round_ = Round{};
         next_round();
         return *cache_;
@@ -143,8 +143,7 @@ TEST_F(TileCacheTest, BricksComeFirstAndThenTheDeepestNodes) {
     // Blocks for the root, its children, those of two of them, and of one of theirs: then there is no room.
     for (const bool asks_for_brick : {true, false}) {
         SCOPED_TRACE(asks_for_brick);
-        TileCache& cache =
-            make({.node_pool_bytes = bytes_of_blocks(5), .brick_pool_bytes = bytes_of_slots(8)});
+        TileCache& cache = make({.node_pool_bytes = bytes_of_blocks(5), .brick_bytes = bytes_of_slots(8)});
         const std::vector<std::uint32_t> level1 = children_of(0);
         const std::vector<std::uint32_t> one = children_of(level1[0]);
         const std::vector<std::uint32_t> inner = children_of(one[0]);
@@ -170,7 +169,7 @@ TEST_F(TileCacheTest, BricksComeFirstAndThenTheDeepestNodes) {
 }
 
 TEST_F(TileCacheTest, FullPoolAnswersWhatFitsAndTheRestLater) {
-    TileCache& cache = make({.brick_pool_bytes = bytes_of_slots(3)});
+    TileCache& cache = make({.brick_bytes = bytes_of_slots(3)});
     ASSERT_EQ(cache.pool().slot_count(), 3);
     const std::vector<std::uint32_t> level1 = children_of(0);
     const std::vector<TileQuery> queries = for_bricks({level1[0], level1[1], level1[2], level1[3]});
@@ -189,7 +188,7 @@ TEST_F(TileCacheTest, FullPoolAnswersWhatFitsAndTheRestLater) {
 }
 
 TEST_F(TileCacheTest, KeepsWhatWasUsedSinceARoundUntilToldOtherwise) {
-    TileCache& cache = make({.brick_pool_bytes = bytes_of_slots(2)});
+    TileCache& cache = make({.brick_bytes = bytes_of_slots(2)});
     const std::vector<std::uint32_t> level1 = children_of(0);
     const Round first_used = round();
     EXPECT_EQ(cache.answer(for_bricks({level1[0], level1[1]})).bricks, 2U);
@@ -227,7 +226,7 @@ TEST_F(TileCacheTest, WhenTimeIsUpOnlyTheFirstBatchIsAnswered) {
 }
 
 TEST_F(TileCacheTest, AheadNothingThatIsKeptLosesItsPlace) {
-    TileCache& cache = make({.brick_pool_bytes = bytes_of_slots(3)});
+    TileCache& cache = make({.brick_bytes = bytes_of_slots(3)});
     const std::vector<std::uint32_t> level1 = children_of(0);
     EXPECT_EQ(cache.answer(for_bricks({level1[0]})).bricks, 1U);
     next_round();
@@ -250,7 +249,7 @@ TEST_F(TileCacheTest, AheadNothingThatIsKeptLosesItsPlace) {
 }
 
 TEST_F(TileCacheTest, TileThatMayBeFinalIsProducedBeforeItIsSubdivided) {
-    TileCache& cache = make({.brick_pool_bytes = 8U << 20U}, {.constant = false, .low_frequency = true});
+    TileCache& cache = make({.brick_bytes = 8U << 20U}, {.constant = false, .low_frequency = true});
     const TileQuery query{0, QueryKind::children};
     const TileCache::Answer brick = cache.answer({&query, 1});
     EXPECT_TRUE(brick.parents.empty());
@@ -272,7 +271,7 @@ TEST_F(TileCacheTest, TileThatMayBeFinalIsProducedBeforeItIsSubdivided) {
 }
 
 TEST_F(TileCacheTest, RefusesMainMemoryForTilesThatMayBeFinal) {
-    const renderer::CacheSizes sizes{.brick_pool_bytes = 8U << 20U, .brick_cache_bytes = 8U << 20U};
+    const renderer::PoolSizes sizes{.brick_bytes = 8U << 20U, .cache_bytes = 8U << 20U};
     EXPECT_NO_THROW(make(sizes));
     EXPECT_THROW(make(sizes, {.low_frequency = true}), Error);
 }
