@@ -55,11 +55,11 @@ void Context::load_functions(void* (*get_proc_address)(const char*), bool debug)
     const int version = gladLoadGL(reinterpret_cast<GLADloadfunc>(get_proc_address));
     if (version == 0)
         throw Error(Fault::context, std::string(backend()), "the driver gives no OpenGL functions",
-                    "update the driver, or choose another --context");
+                    "update the driver, or choose another ContextOptions::kind");
     if (version < GLAD_MAKE_VERSION(4, 5)) {
         throw Error(Fault::context, fmt::format("driver \"{}\"", text_of(GL_RENDERER)),
                     fmt::format("OpenGL 4.5 core is needed, it offers {}", text_of(GL_VERSION)),
-                    "update the driver, or choose another --context");
+                    "update the driver, or choose another ContextOptions::kind");
     }
     if (debug) debug_log_->attach();
 }

@@ -10,6 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include <glad/gl.h>
+
 #include "gl/buffer.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include <glad/gl.h>
 #include <glm/glm.hpp>
 
 #include "gl/handle.h"

@@ -11,10 +11,14 @@
 #include "gl/shader_source.h"
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/grid.h"
-#include "voxelizer/methods/pyramid_builder.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::voxelizer {
+
+class PyramidBuilder;
+
+/// The most voxels of a region along an axis (VOXEL_REGION_SIDE in the shaders).
+constexpr int max_region_side = 16384;
 
 /// How voxels are found. Only `conservative` is exact; the others are Forest et al.'s, to compare with.
 enum class Method : std::uint8_t {
@@ -34,7 +38,7 @@ enum class Method : std::uint8_t {
 /// construction.
 class Voxelizer {
 public:
-    virtual ~Voxelizer() = default;
+    virtual ~Voxelizer();
     Voxelizer(const Voxelizer&) = delete;
     Voxelizer& operator=(const Voxelizer&) = delete;
 
@@ -43,7 +47,7 @@ public:
     ///                marked.
     /// @throws Error  Fault::memory when the region's bits pass the driver's shader-storage limit: the
     ///                message says what would fit. Fault::usage when the region has more than
-    ///                VOXEL_REGION_SIDE voxels along an axis.
+    ///                max_region_side voxels along an axis.
     [[nodiscard]] BitGrid voxelize(const GpuSurface& surface, const Region& region,
                                    std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
@@ -66,7 +70,7 @@ public:
     /// an idle driver by the wall clock: the timer queries of llvmpipe do not see compute work.
     [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
     /// What the coarser levels of the last pyramid took on top.
-    [[nodiscard]] double last_pyramid_milliseconds() const { return pyramid_.last_milliseconds(); }
+    [[nodiscard]] double last_pyramid_milliseconds() const;
 
 protected:
     explicit Voxelizer(const gl::ShaderSource& shaders);
@@ -88,7 +92,7 @@ private:
                     std::optional<std::span<const std::uint32_t>> subset);
 
     gl::ShaderSource shaders_;
-    PyramidBuilder pyramid_;
+    std::unique_ptr<PyramidBuilder> pyramid_;
     gl::Buffer bits_;
     std::vector<ChunkPart> parts_;
     double last_milliseconds_ = 0.0;

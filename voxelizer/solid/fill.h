@@ -36,7 +36,7 @@ namespace cairn::voxelizer {
 /// parity; where rows come out whole by chance, because as many faces are turned one way as the other, gaps
 /// between parts may be filled.
 ///
-/// Build the surface with SurfaceOptions::outside, or a grid that cuts through the scene (--bounds) has
+/// Build the surface with SurfaceOptions::outside, or a grid that cuts through the scene (grid_over()) has
 /// doubtful rows that are none.
 class SolidFill {
 public:
