@@ -17,6 +17,15 @@
 #include "voxelizer/surface/moving_surface.h"
 
 namespace cairn::renderer {
+namespace {
+
+/// Voxels have one size, so that cones would be rays.
+View with_rays(View view) {
+    if (view.shadow.kind == ShadowQuality::Kind::cones) view.shadow.kind = ShadowQuality::Kind::rays;
+    return view;
+}
+
+}  // namespace
 
 struct PyramidShadowRenderer::Parts {
     Parts(const voxelizer::Grid& shown_grid, const PyramidShadowOptions& options,
@@ -62,14 +71,14 @@ std::vector<std::uint32_t> PyramidShadowRenderer::Parts::light(const View& view,
     const auto start = Clock::now();
     statistics = {.move_ms = move_ms, .pyramid_bytes = pyramid.size_bytes()};
     build_pyramid();
-    interop::MarchView marched = march_view(view, grid, shape, nullptr);
+    interop::MarchView marched = march_view(with_rays(view), grid, shape, nullptr);
     std::vector<std::uint32_t> pixels;
-    for (int row = 0; row < view.height; row += marched.band.y) {
+    for (int row = 0; row < view.size.height; row += marched.band.y) {
         const auto drawing = Clock::now();
         const MeshSurface mesh = raster->draw_surface(marched, {grid.origin, grid.voxel_size}, row);
         glFinish();
         statistics.raster_ms += milliseconds_since(drawing);
-        const int end = std::min(mesh.first_row + mesh.rows, view.height);
+        const int end = std::min(mesh.first_row + mesh.rows, view.size.height);
         marched.band = glm::ivec4(row, end - row, shown, 0);
         const auto band =
             shadows.light(marched, pyramid, {mesh.first_row, mesh.nearest, mesh.surface, MESH_OWN_HEIGHT});
@@ -126,14 +135,14 @@ void PyramidShadowRenderer::move_to(double seconds) {
 
 optics::Image PyramidShadowRenderer::render(const View& view) {
     const std::vector<std::uint32_t> pixels = parts_->light(view, SHOW_SURFACE);
-    optics::Image image{view.width, view.height, std::vector<std::uint8_t>(4 * pixels.size())};
+    optics::Image image{view.size.width, view.size.height, std::vector<std::uint8_t>(4 * pixels.size())};
     std::memcpy(image.rgba.data(), pixels.data(), image.rgba.size());
     return image;
 }
 
 optics::LightShares PyramidShadowRenderer::light_shares(const View& view) {
     const std::vector<std::uint32_t> pixels = parts_->light(view, SHOW_LIGHT);
-    optics::LightShares out{view.width, view.height, std::vector<float>(pixels.size())};
+    optics::LightShares out{view.size.width, view.size.height, std::vector<float>(pixels.size())};
     std::memcpy(out.shares.data(), pixels.data(), pixels.size() * sizeof(float));
     return out;
 }

@@ -56,8 +56,8 @@ public:
     /// @throws Error  Fault::usage when it was made for one moment.
     void move_to(double seconds);
 
-    /// The picture depends on the view and the moment alone. `pixel_error`, `level_of_detail` and
-    /// `shadow_cones` do not count: voxels have one size.
+    /// The picture depends on the view and the moment alone. The level of detail does
+    /// not count, and cones are rays: voxels have one size.
     /// @throws Error  Fault::usage for a view that is none.
     [[nodiscard]] optics::Image render(const View& view);
     /// Of the same rays what arrives of the light.

@@ -3,64 +3,22 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "renderer/frame/prefetch_view.h"
 #include "renderer/march/march_view.h"
-#include "renderer/march/transfer_table.h"
 #include "renderer/mesh/mesh_raster.h"
-#include "renderer/produce/dense_field.h"
-#include "renderer/produce/surface_content.h"
-#include "renderer/produce/volume_content.h"
 #include "renderer/renderer_parts.h"
 #include "shaders/interop/config.h"
-#include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
-namespace {
-
-voxelizer::Surface flatten(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
-                           const TreeShape& shape) {
-    const voxelizer::Grid grid = voxelizer::grid_around(snapshot.bounds, shape.resolution());
-    return voxelizer::build_surface(scene, snapshot, grid, {.attributes = true});
-}
-
-}  // namespace
-
-Renderer::Renderer(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const TreeOptions& options,
-                   const gl::ShaderSource& shaders) {
-    const TreeShape shape = tree_shape_of(options);
-    if (shape.has_windows()) {
-        throw Error(Fault::usage, "tree", "a surface has no voxels as fine as its finest level",
-                    fmt::format("give it at most 2^{} voxels across", MAX_RESOLUTION_BITS));
-    }
-    auto content = std::make_unique<SurfaceContent>(shape, flatten(scene, snapshot, shape), shaders);
-    parts_ = std::make_unique<Parts>(shape, std::move(content), options, shaders);
-}
-
-Renderer::Renderer(std::unique_ptr<Content> content, const TreeOptions& options,
+Renderer::Renderer(std::unique_ptr<Content> content, const RendererOptions& options,
                    const gl::ShaderSource& shaders)
-    : parts_(std::make_unique<Parts>(tree_shape_of(options), std::move(content), options, shaders)) {}
-
-Renderer::Renderer(const scenes::Volume& volume, const TransferFunction& transfer, const TreeOptions& options,
-                   const VolumeOptions& volume_options, const gl::ShaderSource& shaders)
-    : Renderer(std::make_shared<DenseField>(volume, options.n), transfer, options, volume_options, shaders) {}
-
-Renderer::Renderer(std::shared_ptr<const Field> field, const TransferFunction& transfer,
-                   const TreeOptions& options, const VolumeOptions& volume_options,
-                   const gl::ShaderSource& shaders) {
-    const VolumeShape shape = make_volume_shape(field->frame(), options.n, options.m, options.max_resolution);
-    auto content = std::make_unique<VolumeContent>(shape, std::move(field), transfer.visible());
-    auto table = std::make_shared<TransferTable>(transfer, volume_options, content->grid().voxel_size);
-    MarchKind kind{"march/volume.comp.glsl",
-                   "march/volume_shadow.comp.glsl",
-                   {{"VOLUME_STEPS", std::to_string(volume_options.steps_per_voxel)}},
-                   [table] { table->bind(); },
-                   false};
-    parts_ = std::make_unique<Parts>(shape.tree, std::move(content), options, shaders, std::move(kind));
-}
+    : parts_(std::make_unique<Parts>(std::move(content), options, shaders)) {}
 
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
@@ -74,14 +32,14 @@ void Renderer::set_mix(const Mix& mix) {
 optics::Image Renderer::march(const View& view, Rows rows, int shown,
                               const std::function<void(int)>& march_band) {
     check_view(view, parts_->shape);
-    if (rows.first < 0 || rows.count < 1 || rows.count > view.height - rows.first) {
+    if (rows.first < 0 || rows.count < 1 || rows.count > view.size.height - rows.first) {
         throw Error(
             Fault::usage, "view",
-            fmt::format("{} rows from row {} of a picture of {}", rows.count, rows.first, view.height),
+            fmt::format("{} rows from row {} of a picture of {}", rows.count, rows.first, view.size.height),
             "ask for rows that the picture has");
     }
     Parts& parts = *parts_;
-    if (view.shadow_cones && !parts.marcher.marches_surfaces())
+    if (view.shadow.kind == ShadowQuality::Kind::cones && !parts.marcher.marches_surfaces())
         throw Error(Fault::usage, "view", "shadow cones through a volume", "send it shadow rays");
     if (!(view == parts.ahead.view)) parts.ahead = {view, parts.round, 0, false};
     const bool is_blended = parts.blends(view);
@@ -91,7 +49,7 @@ optics::Image Renderer::march(const View& view, Rows rows, int shown,
     FrameStatistics& statistics = parts.statistics;
 
     interop::MarchView marched = parts.march_view_of(view);
-    const int band_rows = Marcher::band_rows(view.width, view.height);
+    const int band_rows = Marcher::band_rows(view.size.width, view.size.height);
     const bool shows_light = shown == SHOW_LIGHT;
     optics::Image image;
     if (!shows_light) {
@@ -101,7 +59,7 @@ optics::Image Renderer::march(const View& view, Rows rows, int shown,
     const std::uint32_t background =
         shows_light ? std::bit_cast<std::uint32_t>(float(SHOWN_NOTHING)) : background_pixel(view.background);
     const bool is_known = !image.rgba.empty();
-    if (!is_known) image = {view.width, rows.count, {}};
+    if (!is_known) image = {view.size.width, rows.count, {}};
     const int end = rows.first + rows.count;
     for (int row = rows.first; row < end && !is_known; row += marched.band.y) {
         const int drawn_end = std::min(parts.draw_mix(marched, row), end);
@@ -122,46 +80,43 @@ optics::Image Renderer::march(const View& view, Rows rows, int shown,
     return image;
 }
 
-optics::Image Renderer::render(const View& view, const std::function<void(double)>& progress) {
+optics::Image Renderer::march_patiently(const View& view, Rows rows, int shown, const Progress& progress) {
     parts_->keep_nothing();
-    return march(view, {0, view.height}, int(view.show), [&](int row) {
-        parts_->converge(progress, double(view.width) * view.height, double(view.width) * row);
+    const double pixels = double(view.size.width) * rows.count;
+    return march(view, rows, shown, [&](int row) {
+        parts_->converge(progress, pixels, double(view.size.width) * (row - rows.first));
     });
 }
 
-optics::LightShares Renderer::light_shares(const View& view, const std::function<void(double)>& progress) {
+Frame Renderer::render(const View& view, const Request& request) {
+    const Rows rows = request.rows.value_or(Rows{0, view.size.height});
+    const int shown = int(view.show);
+    optics::Image image;
+    if (request.budget) {
+        parts_->require_lists();
+        const auto deadline = deadline_in(*request.budget);
+        parts_->keep_what_was_used_for(view, rows);
+        image = march(view, rows, shown, [&](int) { parts_->refine(deadline); });
+    } else {
+        image = march_patiently(view, rows, shown, request.progress);
+    }
+    return {std::move(image), parts_->statistics};
+}
+
+LightFrame Renderer::light(const View& view, const Progress& progress) {
     if (!parts_->marcher.marches_surfaces()) {
         throw Error(Fault::usage, "view", "the light at a volume is not that of one place",
                     "render its picture");
     }
-    parts_->keep_nothing();
-    const optics::Image bits = march(view, {0, view.height}, SHOW_LIGHT, [&](int row) {
-        parts_->converge(progress, double(view.width) * view.height, double(view.width) * row);
-    });
-    optics::LightShares out{view.width, view.height, std::vector<float>(bits.rgba.size() / sizeof(float))};
-    std::memcpy(out.shares.data(), bits.rgba.data(), bits.rgba.size());
-    return out;
+    const optics::Image bits = march_patiently(view, {0, view.size.height}, SHOW_LIGHT, progress);
+    std::vector<float> shares(bits.rgba.size() / sizeof(float));
+    std::memcpy(shares.data(), bits.rgba.data(), bits.rgba.size());
+    return {{view.size.width, view.size.height, std::move(shares)}, parts_->statistics};
 }
 
-optics::Image Renderer::render_rows(const View& view, Rows rows) {
-    parts_->keep_nothing();
-    return march(view, rows, int(view.show), [&](int) { parts_->converge({}, 0.0, 0.0); });
-}
-
-optics::Image Renderer::render_within(const View& view, double budget_ms) {
-    return render_rows_within(view, {0, view.height}, budget_ms);
-}
-
-optics::Image Renderer::render_rows_within(const View& view, Rows rows, double budget_ms) {
-    parts_->require_lists();
-    const auto deadline = deadline_in(budget_ms);
-    parts_->keep_what_was_used_for(view, rows);
-    return march(view, rows, int(view.show), [&](int) { parts_->refine(deadline); });
-}
-
-std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
+std::uint64_t Renderer::prefetch(const View& next, Milliseconds budget) {
     check_view(next, parts_->shape);
-    const auto deadline = deadline_in(budget_ms);
+    const auto deadline = deadline_in(budget);
     Parts& parts = *parts_;
     parts.require_lists();
     const bool is_blended = parts.blends(next);
@@ -169,7 +124,7 @@ std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
     const FrameStatistics of_frame = parts.statistics;
     const View thin = thinned(next);
     interop::MarchView marched = parts.march_view_of(thin);
-    marched.band = glm::ivec4(0, thin.height, int(thin.show), int(background_pixel(thin.background)));
+    marched.band = glm::ivec4(0, thin.size.height, int(thin.show), int(background_pixel(thin.background)));
     parts.tree.keep_since(parts.frame_round);
     parts.marcher.begin_frame(marched, parts.tree, parts.pool, is_blended);
     while (Clock::now() < deadline) {
@@ -182,8 +137,8 @@ std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
     return produced;
 }
 
-Prefetched Renderer::prefetch_finer(double budget_ms) {
-    const auto deadline = deadline_in(budget_ms);
+Prefetched Renderer::prefetch_finer(Milliseconds budget) {
+    const auto deadline = deadline_in(budget);
     Parts& parts = *parts_;
     parts.require_lists();
     if (parts.is_empty()) return {};
@@ -198,10 +153,6 @@ Prefetched Renderer::prefetch_finer(double budget_ms) {
 
 void Renderer::forget_picture() {
     parts_->picture.forget();
-}
-
-const FrameStatistics& Renderer::statistics() const {
-    return parts_->statistics;
 }
 
 }  // namespace cairn::renderer

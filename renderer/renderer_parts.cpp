@@ -36,35 +36,34 @@ std::vector<Question> by_urgency(const PassResult& pass, const Tree& tree) {
     return questions;
 }
 
-MarchKind with_content(MarchKind kind, const Content& content) {
-    if (content.has_constant()) kind.defines.emplace_back("HAS_CONSTANT", "1");
-    if (content.has_low_frequency()) kind.defines.emplace_back("HAS_FINAL", "1");
-    return kind;
+ContentProgram program_of(const Content& content) {
+    ContentProgram program = content.program();
+    if (content.has_constant()) program.defines.emplace_back("HAS_CONSTANT", "1");
+    if (content.has_low_frequency()) program.defines.emplace_back("HAS_FINAL", "1");
+    return program;
 }
 
 }  // namespace
 
-Renderer::Parts::Parts(const TreeShape& tree_shape, std::unique_ptr<Content> shown,
-                       const TreeOptions& options, const gl::ShaderSource& shaders, MarchKind kind)
-    : shape(tree_shape),
+Renderer::Parts::Parts(std::unique_ptr<Content> shown, const RendererOptions& options,
+                       const gl::ShaderSource& shaders)
+    : shape(shown->shape()),
       content(std::move(shown)),
-      pool(shape, content->channels(), options.brick_pool_bytes),
-      tree(shape, pool.slot_count(), options.node_pool_bytes, content->oracle().child_mask(Tile{}),
+      pool(shape, content->channels(), options.pools.brick_bytes),
+      tree(shape, pool.slot_count(), options.pools.node_bytes, content->oracle().child_mask(Tile{}),
            content->has_constant()),
-      marcher(shape, content->has_color(),
-              {options.traversal, options.block_starts, options.query_capacity, options.tile_queries},
-              shaders, with_content(std::move(kind), *content)),
-      tile_queries(options.tile_queries) {
-    if (options.mips && !content->fills_mips()) {
+      marcher(shape, content->has_color(), options.march, shaders, program_of(*content)),
+      tile_queries(options.march.tile_queries) {
+    if (shape.mips != 0 && !content->fills_mips()) {
         throw Error(Fault::usage, "tree", "the bricks of this content have no mip levels",
                     "leave the mips and blended levels of detail to surfaces");
     }
-    if (options.brick_cache_bytes == 0) return;
+    if (options.pools.cache_bytes == 0) return;
     if (content->has_low_frequency()) {
         throw Error(Fault::usage, "brick cache", "it cannot tell which tiles of this content are final",
                     "leave it out");
     }
-    cache.emplace(pool, options.brick_cache_bytes);
+    cache.emplace(pool, options.pools.cache_bytes);
     tree.record_evictions(true);
 }
 
@@ -369,10 +368,10 @@ bool Renderer::Parts::is_empty() const {
 
 /// @throws Error (Fault::usage) when the view asks for blended levels of detail and bricks have no mips.
 bool Renderer::Parts::blends(const View& view) const {
-    const bool is_blended = view.level_of_detail == LevelOfDetail::blended;
+    const bool is_blended = view.detail.kind == LevelOfDetail::Kind::blended;
     if (is_blended && shape.mips == 0) {
         throw Error(Fault::usage, "view", "levels of detail cannot be blended without mip levels",
-                    "make the renderer of a surface with TreeOptions::mips");
+                    "make the content a surface, with TreeOptions::mips");
     }
     return is_blended;
 }

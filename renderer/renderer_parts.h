@@ -38,8 +38,7 @@ struct Ahead {
 };
 /// In the order of the data's way: oracle and producer, pools, marcher.
 struct Renderer::Parts {
-    Parts(const TreeShape& tree_shape, std::unique_ptr<Content> shown, const TreeOptions& options,
-          const gl::ShaderSource& shaders, MarchKind kind = {});
+    Parts(std::unique_ptr<Content> shown, const RendererOptions& options, const gl::ShaderSource& shaders);
 
     [[nodiscard]] interop::MarchView march_view_of(const View& view);
     void find_tiles_asked_for(const std::vector<std::uint32_t>& entries);

@@ -45,8 +45,8 @@ void set_area_light(interop::MarchView& out, const View& view, double voxel_size
     out.light_v = glm::vec4(glm::vec3(light.half_v / voxel_size), float(lost));
     const optics::LightShape shape = light.positional ? light.shape : optics::LightShape::sphere;
     const bool soft = is_soft(view);
-    out.area_light =
-        glm::ivec4(soft ? view.shadow_rays : 1, int(shape), soft ? 1 : 0, soft && view.shadow_cones ? 1 : 0);
+    const bool cones = soft && view.shadow.kind == ShadowQuality::Kind::cones;
+    out.area_light = glm::ivec4(shadow_samples(view), int(shape), soft ? 1 : 0, cones ? 1 : 0);
 }
 
 /// What of a view is told in voxels: of the finest level, from the root cube's low corner; or of the coarsest
@@ -82,11 +82,11 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
     const double half_height = std::tan(0.5 * view.camera.yfov);
-    const double half_width = half_height * view.width / view.height;
+    const double half_width = half_height * view.size.width / view.size.height;
 
     // Levels are n apart: the nearest one, as in mip mapping, has voxels between 1 / sqrt(n) and sqrt(n)
     // pixels.
-    const double cone = 2.0 * half_height / view.height * view.pixel_error * std::sqrt(double(n));
+    const double cone = 2.0 * half_height / view.size.height * view.detail.pixel_error * std::sqrt(double(n));
 
     // Far from the scene a float's step is many voxels: then rays start near the root cube, from the plane
     // that the eye moved forward lies in.
@@ -102,9 +102,10 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     out.light = view.light.positional ? glm::vec4(glm::vec3(placed.light), 1.0F)
                                       : glm::vec4(glm::vec3(glm::normalize(view.light.towards)), 0.0F);
     out.light_color = glm::vec4(view.light.color, view.light.ambient);
-    out.background = glm::vec4(view.background, float(view.shadow_pixel_error));
+    out.background = glm::vec4(view.background, float(view.shadow.pixel_error));
     set_area_light(out, view, placed.voxel);
-    out.size_shadow = glm::ivec4(view.width, view.height, view.shadow == Shadow::hard ? 1 : 0, 0);
+    out.size_shadow = glm::ivec4(view.size.width, view.size.height,
+                                 view.shadow.kind == ShadowQuality::Kind::none ? 0 : 1, 0);
     const auto finite = [](const glm::vec4& v) { return std::isfinite(glm::dot(v, glm::vec4(1.0F))); };
     if (!finite(out.eye) || !finite(out.forward) || !finite(out.light)) {
         throw Error(Fault::usage, "view", "the camera or the light is too far away for a float to tell",

@@ -63,10 +63,10 @@ std::uint32_t pixels_of(const std::vector<interop::BlockStart>& starts, const gl
 }  // namespace
 
 Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
-                 const gl::ShaderSource& shaders, MarchKind kind)
+                 const gl::ShaderSource& shaders, ContentProgram content)
     : options_(options_for(shape, options)),
       shaders_(shaders),
-      kind_(std::move(kind)),
+      content_(std::move(content)),
       defines_(defines_of(shape, has_color, options_)),
       view_(sizeof(interop::MarchView), "view"),
       shadow_ends_(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE * sizeof(float), "ends of shadow rays"),
@@ -76,7 +76,7 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& opt
         throw Error(Fault::usage, "tile queries", std::to_string(options.query_capacity) + " are no capacity",
                     "choose between 1 and " + std::to_string(QUERY_CAPACITY));
     }
-    defines_.insert(defines_.end(), kind_.defines.begin(), kind_.defines.end());
+    defines_.insert(defines_.end(), content_.defines.begin(), content_.defines.end());
     if (options.tile_queries == TileQueries::blocks) tile_blocks_.emplace(shaders);
     if (shape.has_windows())
         windows_ = gl::Buffer(window_header_bytes + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows");
@@ -103,7 +103,7 @@ const gl::Program& Marcher::primary_program(PassKind kind) {
         defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
         if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
         if (proxy != 0) defines.emplace_back("WITH_PROXY", "");
-        program = gl::build_compute(shaders_, kind_.primary, defines);
+        program = gl::build_compute(shaders_, content_.primary, defines);
     }
     return program;
 }
@@ -123,7 +123,7 @@ const gl::Program& Marcher::shadow_program(PassKind kind) {
         if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
         if (soft != 0) defines.emplace_back("SOFT_SHADOWS", "");
         if (cones != 0) defines.emplace_back("SHADOW_CONES", "");
-        program = gl::build_compute(shaders_, kind_.shadow, defines);
+        program = gl::build_compute(shaders_, content_.shadow, defines);
     }
     return program;
 }
@@ -232,7 +232,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     tree.bind_for_reading();
     pool.bind_for_reading();
     bind_mix();
-    if (kind_.bind) kind_.bind();
+    if (content_.bind) content_.bind();
 
     const std::uint32_t old_shadow = waiting_shadow_;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.

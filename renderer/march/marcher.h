@@ -3,20 +3,18 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "gl/buffer.h"
 #include "gl/program.h"
+#include "renderer/march/march_options.h"
 #include "renderer/march/tile_blocks.h"
-#include "renderer/march/tile_queries.h"
-#include "renderer/march/traversal.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
+#include "renderer/produce/content_program.h"
 #include "shaders/interop/config.h"
 #include "shaders/interop/types.h"
 
@@ -27,15 +25,6 @@ enum class PassKind : std::uint8_t {
     patient,      ///< a ray waits for the tile that it asks for
     progressive,  ///< the same; rays also ask for the bricks of the nodes that they pass
     stand_in,     ///< no ray waits: the nearest ancestor's brick is shown
-};
-
-struct MarchOptions {
-    Traversal traversal = Traversal::mini_stack;
-    bool block_starts = true;  ///< rays start at block_starts(), where there are any
-    /// Tiles that a pass can ask for, [1, QUERY_CAPACITY]. Where more are asked for, the most urgent is known
-    /// all the same: a brick, or else the children of a node as deep as any.
-    int query_capacity = QUERY_CAPACITY;
-    TileQueries tile_queries = TileQueries::list;  ///< patient passes alone know blocks
 };
 
 /// What one pass of rays came back with.
@@ -69,22 +58,13 @@ struct MarchMix {
     int proxy_first_row = 0;
 };
 
-/// How rays see a kind of content: the entry points, and what they need beside the pools.
-struct MarchKind {
-    std::string primary = "march/primary.comp.glsl";
-    std::string shadow = "march/shadow.comp.glsl";
-    gl::Defines defines;
-    std::function<void()> bind;  ///< before each pass; may be empty
-    bool of_surfaces = true;     ///< the shadow rays know SHOW_LIGHT and SHADOW_CONES
-};
-
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
 /// query buffer (Crassin et al. 2008, sections 5.1 to 5.3).
 class Marcher {
 public:
     /// @throws Error (Fault::usage) for a query capacity that is none.
     Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
-            const gl::ShaderSource& shaders, MarchKind kind = {});
+            const gl::ShaderSource& shaders, ContentProgram content = {});
 
     /// Rows of a picture that are marched at once: as many as the driver's largest buffer holds ray states
     /// for.
@@ -105,7 +85,7 @@ public:
     [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool,
                                       PassKind kind = PassKind::patient);
 
-    [[nodiscard]] bool marches_surfaces() const { return kind_.of_surfaces; }
+    [[nodiscard]] bool marches_surfaces() const { return content_.of_surfaces; }
 
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
 
@@ -130,7 +110,7 @@ private:
 
     MarchOptions options_;
     gl::ShaderSource shaders_;
-    MarchKind kind_;
+    ContentProgram content_;
     gl::Defines defines_;
     void bind_mix() const;
     void set_mix(const gl::Program& program) const;

@@ -73,6 +73,9 @@ struct TreeShape {
 /// @throws Error (Fault::usage) likewise.
 [[nodiscard]] TreeShape make_deep_tree_shape(int n, int m, int max_level);
 
+/// The most levels under the root that make_deep_tree_shape() takes for n and m.
+[[nodiscard]] int deepest_level(int n, int m);
+
 /// A region of the regular subdivision: level 0 is the root cube, level l has n^l tiles across it.
 struct Tile {
     int level = 0;

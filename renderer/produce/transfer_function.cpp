@@ -1,6 +1,6 @@
 // Pre-integrated transfer functions: Engel, Kraus and Ertl 2001, "High-quality pre-integrated volume
 // rendering using hardware-accelerated pixel shading", sections 3 and 3.2.
-#include "renderer/march/transfer_function.h"
+#include "renderer/produce/transfer_function.h"
 
 #include <algorithm>
 #include <cmath>

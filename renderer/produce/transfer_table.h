@@ -2,7 +2,7 @@
 
 #include "gl/buffer.h"
 #include "gl/handle.h"
-#include "renderer/march/transfer_function.h"
+#include "renderer/produce/transfer_function.h"
 
 namespace cairn::renderer {
 

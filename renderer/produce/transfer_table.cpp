@@ -1,4 +1,4 @@
-#include "renderer/march/transfer_table.h"
+#include "renderer/produce/transfer_table.h"
 
 #include <vector>
 

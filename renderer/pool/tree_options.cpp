@@ -1,4 +1,4 @@
-#include "renderer/frame/tree_options.h"
+#include "renderer/pool/tree_options.h"
 
 #include "base/error.h"
 
