@@ -4,6 +4,7 @@
 # ${PROJECT_BINARY_DIR}/include/cairn with their quoted includes rewritten, and fails when one of them includes a header
 # that is not listed here, or OpenGL's loader, which is the library's own (cmake/WriteHeaders.cmake).
 set(cairn_public_headers
+  base/clock.h
   base/error.h
   gl/buffer.h
   gl/context.h
@@ -18,18 +19,23 @@ set(cairn_public_headers
   reference/image.h
   reference/shadow_truth.h
   renderer/frame/frame_statistics.h
-  renderer/frame/tree_options.h
+  renderer/march/march_options.h
   renderer/march/tile_queries.h
-  renderer/march/transfer_function.h
   renderer/march/traversal.h
   renderer/mesh/mix.h
+  renderer/open_content.h
   renderer/pool/brick_pool.h
+  renderer/pool/pool_sizes.h
+  renderer/pool/tree_options.h
   renderer/pool/tree_shape.h
   renderer/produce/content.h
+  renderer/produce/content_program.h
   renderer/produce/oracle.h
   renderer/produce/producer.h
+  renderer/produce/transfer_function.h
   renderer/produce/volume_field.h
   renderer/renderer.h
+  renderer/renderer_options.h
   renderer/view/view.h
   scenes/builtin/builtin.h
   scenes/load.h

@@ -11,7 +11,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> option_na
     {{"ContextOptions::kind", "--context"},
      {"LoadOptions::trust_paths", "--trust-paths"},
      {"Method::conservative", "--method conservative"},
-     {"TreeOptions::brick_pool_bytes", "--brick-pool"},
+     {"PoolSizes::brick_bytes", "--brick-pool"},
      {"grid_over()", "--bounds"}}};
 
 }  // namespace

@@ -22,6 +22,7 @@ constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
 constexpr int most_pauses_in_windows = ((16 << WINDOW_TILE_BITS) / TURN_BUDGET + 1) * MAX_WINDOWS;
 constexpr std::size_t window_header_bytes = sizeof(glm::ivec4);
 constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
+static_assert(max_query_capacity == QUERY_CAPACITY, "the shaders hold another number of queries");
 constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t);
 constexpr std::size_t query_urgent_offset = query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t);
 static_assert(QUERY_RANKS == QUERY_RANK_WINDOWS + 8 * MAX_WINDOWS);
