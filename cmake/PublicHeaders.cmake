@@ -30,6 +30,7 @@ set(cairn_public_headers
   renderer/pool/tree_shape.h
   renderer/produce/content.h
   renderer/produce/content_program.h
+  renderer/produce/cpu_brick.h
   renderer/produce/oracle.h
   renderer/produce/producer.h
   renderer/produce/transfer_function.h

@@ -6,12 +6,13 @@
 namespace cairn::app {
 namespace {
 
-/// What the libraries' error texts name, and the option that sets it.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> option_names = {
+/// What the libraries' error texts name, and the option that sets it, or the verb that does it.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> option_names = {
     {{"ContextOptions::kind", "--context"},
      {"LoadOptions::trust_paths", "--trust-paths"},
      {"Method::conservative", "--method conservative"},
      {"PoolSizes::brick_bytes", "--brick-pool"},
+     {"create_context()", "cairn render"},
      {"grid_over()", "--bounds"}}};
 
 }  // namespace
