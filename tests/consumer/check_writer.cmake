@@ -7,8 +7,7 @@ file(WRITE "${FOLDER}/from/gl/handle.h" "#include <glad/gl.h>\n")
 file(WRITE "${FOLDER}/from/gl/program.h" "#  include \"gl/hidden.h\"\n")
 
 function(write_headers expected_fault)
-  list(JOIN ARGN "\;" headers)
-  execute_process(COMMAND ${CMAKE_COMMAND} "-DHEADERS=${headers}" "-DFROM=${FOLDER}/from" "-DTO=${FOLDER}/to" -P ${WRITER}
+  execute_process(COMMAND ${CMAKE_COMMAND} "-DHEADERS=${ARGN}" "-DFROM=${FOLDER}/from" "-DTO=${FOLDER}/to" -P ${WRITER}
                   RESULT_VARIABLE code ERROR_VARIABLE text OUTPUT_QUIET)
   if(expected_fault STREQUAL "" AND NOT code EQUAL 0)
     message(FATAL_ERROR "refused: ${text}")
