@@ -7,8 +7,8 @@ namespace cairn::renderer {
 
 /// How a renderer works. No picture depends on it. The tree is the content's (renderer/pool/tree_options.h).
 struct RendererOptions {
-    PoolSizes pools;
-    MarchOptions march;
+    PoolSizes pools = {};
+    MarchOptions march = {};
     bool operator==(const RendererOptions&) const = default;
 };
 

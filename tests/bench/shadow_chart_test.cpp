@@ -233,9 +233,9 @@ TEST_F(ShadowChart, ManyRaysAreNoLessAccurateThanFew) {
     sampling.exact_strata = 32;
     const std::vector<float> truth = soft_shares(tracer, question, receivers, sampling).shares;
     const auto ours = shadowing_renderer(scene, tree_of(512), {});
-    view.pixel_error = always_finest;
+    view.detail.pixel_error = always_finest;
     const auto rmse = [&](int rays) {
-        view.shadow_rays = rays;
+        view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
         return reference::shadow_error(shadow_frame(*ours, view).shares, truth).rmse();
     };
     const double few = rmse(64);

@@ -50,10 +50,9 @@ renderer::View nearer(const Subject& subject) {
 /// for bit, without a tile being missed. And the counts are as far apart as what each knows.
 void expect_nothing_missed(const Subject& subject, renderer::View view,
                            const std::function<std::unique_ptr<VisibleBricks>(const renderer::View&)>& make) {
-    view.shadow = renderer::Shadow::none;
-    renderer::Renderer rays = subject.make({.brick_pool_bytes = pool_bytes}, {});
-    const optics::Image image = rays.render(view);
-    const renderer::FrameStatistics by_rays = rays.statistics();
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
+    renderer::Renderer rays = subject.make({}, {}, {.pools = {.brick_bytes = pool_bytes}});
+    const auto [image, by_rays] = rays.render(view);
     const Visibility by_frustum = make(view)->by_frustum();
     EXPECT_EQ(by_frustum.missed, 0U);
     EXPECT_EQ(by_frustum.image.rgba, image.rgba);
@@ -135,12 +134,12 @@ TEST_F(VisibilityTest, ABoxIsVisibleWhereARayThroughAPixelReachesIt) {
     const renderer::TreeShape shape = renderer::tree_shape_of(options);
     const auto content = subject.content(options, {});
     renderer::View seen = from_within(subject);
-    seen.width = 61;
-    seen.height = 47;
+    seen.size.width = 61;
+    seen.size.height = 47;
     const interop::MarchView view = renderer::march_view(seen, content->grid(), shape, nullptr);
     const glm::dvec3 eye(view.eye);
     BoxTests tests(view, {});
-    std::vector<float> inverse_depths(std::size_t(seen.width) * std::size_t(seen.height));
+    std::vector<float> inverse_depths(std::size_t(seen.size.width) * std::size_t(seen.size.height));
     int visible_count = 0, hidden_count = 0, in_doubt = 0;
     for (int round = 0; round < 12; ++round) {
         const double typical = 300.0 * std::exp2(4.5 * unit());
@@ -164,7 +163,7 @@ TEST_F(VisibilityTest, ABoxIsVisibleWhereARayThroughAPixelReachesIt) {
             const Box& box = boxes[i];
             const glm::dvec3 far = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
             // A pixel is about 1/32 of the distance wide here, and the tests add a 64th of one.
-            const double pixel = 2.0 * glm::length(glm::dvec3(view.up)) / seen.height;
+            const double pixel = 2.0 * glm::length(glm::dvec3(view.up)) / seen.size.height;
             const double slack = glm::length(far) * pixel / 16.0;
             const bool must = reaches(view, box, inverse_depths, 1e-5);
             const bool may = reaches(view, {box.low - slack, box.high + slack}, inverse_depths, -1e-5);

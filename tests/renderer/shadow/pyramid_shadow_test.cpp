@@ -25,6 +25,7 @@
 #include "tests/support/mesh_rays.h"
 #include "tests/support/moving_scenes.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 #include "voxelizer/surface/moving_surface.h"
 
 namespace cairn::test {
@@ -36,16 +37,16 @@ using renderer::View;
 
 View view_of(const scenes::Bounds& bounds, int width, int height, int rays) {
     View view;
-    view.width = width;
-    view.height = height;
+    view.size.width = width;
+    view.size.height = height;
     view.camera = optics::framing_camera(bounds, double(width) / height);
     const glm::dvec3 middle = 0.5 * (bounds.low + bounds.high);
     const double size = glm::length(bounds.high - bounds.low);
     view.light.positional = true;
     view.light.position = middle + size * glm::dvec3(0.5, 0.9, 0.3);
     view.light.radius = 0.12 * size;
-    view.shadow_rays = rays;
-    view.pixel_error = 1e-6;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
+    view.detail.pixel_error = 1e-6;
     return view;
 }
 
@@ -61,7 +62,7 @@ TEST_F(PyramidShadows, PenumbraOfASquareComesToTheClosedForm) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     PyramidShadowRenderer pyramid(scene, snapshot, {.resolution = 512});
     View view;
-    view.width = view.height = 96;
+    view.size.width = view.size.height = 96;
     view.camera = {.eye = {0.0, 8.0, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0.0, 0.0, -1.0}, .yfov = 0.5};
     view.light.positional = true;
     view.light.position = {0.1, 3.0, 0.0};
@@ -75,22 +76,22 @@ TEST_F(PyramidShadows, PenumbraOfASquareComesToTheClosedForm) {
         return std::max(0.0, std::min(high, 0.4) - std::max(low, -0.4)) / 0.8;
     };
     for (const auto& [count, limit] : {std::pair{16, 0.05}, {64, 0.025}, {512, 0.02}}) {
-        view.shadow_rays = count;
+        view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = count};
         const auto shares = pyramid.light_shares(view).shares;
         if (count == 512) {
             EXPECT_GT(pyramid.statistics().passes, 1) << "no ray paused: the test says less";
         }
         double squares = 0.0;
         int penumbra = 0;
-        for (int y = 0; y < view.height; ++y) {
-            for (int x = 0; x < view.width; ++x) {
+        for (int y = 0; y < view.size.height; ++y) {
+            for (int x = 0; x < view.size.width; ++x) {
                 const glm::dvec3 direction = rays.direction({x + 0.5, y + 0.5});
                 const auto at = [&](double height) {
                     return rays.eye - direction * ((rays.eye.y - height) / direction.y);
                 };
                 const glm::dvec3 top = at(1.0);
                 const glm::dvec3 floor = at(0.0);
-                const double share = shares[std::size_t(y * view.width + x)];
+                const double share = shares[std::size_t(y * view.size.width + x)];
                 const double edge = std::max(std::abs(top.x), std::abs(top.z));
                 if (edge < 0.48) {
                     ASSERT_EQ(share, 1.0) << "the square at pixel (" << x << ", " << y << ")";
@@ -117,8 +118,8 @@ TEST_F(PyramidShadows, AreAsNearToEmbreeAsThoseOfTheTree) {
     const scenes::NodeSelection all(scene.nodes.size(), true);
     for (const int rays : {1, 32}) {
         const View view = view_of(snapshot.bounds, 160, 120, rays);
-        const reference::ShadowQuestion question{scene,      snapshot,   all,        view.camera,
-                                                 view.light, view.width, view.height};
+        const reference::ShadowQuestion question{
+            scene, snapshot, all, view.camera, view.light, view.size.width, view.size.height};
         const auto receivers = reference::shadow_receivers(tracer, question);
         const auto truth = rays == 1
                                ? reference::hard_shares(receivers)
@@ -127,13 +128,14 @@ TEST_F(PyramidShadows, AreAsNearToEmbreeAsThoseOfTheTree) {
                                      .shares;
         PyramidShadowRenderer pyramid(scene, snapshot, {.resolution = 512});
         // The same voxels.
-        renderer::Renderer tree(scene, snapshot, {.n = 2, .m = 16, .max_resolution = 512});
+        renderer::Renderer tree =
+            voxel_renderer(scene, snapshot, {.tree = {.n = 2, .m = 16, .max_resolution = 512}});
         tree.set_mix({.meshes = std::make_shared<renderer::MeshRaster>(scene, snapshot),
                       .mesh_shadows = true,
                       .meshes_are_voxelized = true,
                       .voxels_hidden = true});
         const auto ours = reference::shadow_error(pyramid.light_shares(view).shares, truth);
-        const auto theirs = reference::shadow_error(tree.light_shares(view).shares, truth);
+        const auto theirs = reference::shadow_error(tree.light(view).light.shares, truth);
         RecordProperty(fmt::format("rays_{}", rays),
                        fmt::format("pyramid {:.4f} tree {:.4f} wrong, rmse {:.4f} and {:.4f}",
                                    ours.disagreement(), theirs.disagreement(), ours.rmse(), theirs.rmse()));
@@ -167,12 +169,12 @@ TEST_F(PyramidShadows, WithoutShadowsThePictureIsThatOfTheMeshes) {
     View view = view_of(snapshot.bounds, 80, 60, 1);
     PyramidShadowRenderer pyramid(scene, snapshot, {.resolution = 64});
     const auto hard = pyramid.render(view).rgba;
-    view.shadow = renderer::Shadow::none;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
     const auto none = pyramid.render(view).rgba;
     EXPECT_NE(none, hard);
-    renderer::Renderer tree(scene, snapshot, {.max_resolution = 64});
+    renderer::Renderer tree = voxel_renderer(scene, snapshot, {.tree = {.max_resolution = 64}});
     tree.set_mix({.meshes = std::make_shared<renderer::MeshRaster>(scene, snapshot), .voxels_hidden = true});
-    const auto truth = tree.render(view).rgba;
+    const auto truth = tree.render(view).image.rgba;
     // The two round vertices to lattices of their own.
     std::size_t apart = 0;
     for (std::size_t i = 0; i < truth.size(); ++i)
@@ -188,12 +190,12 @@ TEST_F(PyramidShadows, WhatCannotBeIsRefused) {
     PyramidShadowRenderer pyramid(scene, snapshot, {.resolution = 64});
     EXPECT_THROW(pyramid.move_to(1.0), Error);
     View view = view_of(snapshot.bounds, 32, 32, 1);
-    view.shadow_rays = 513;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 513};
     EXPECT_THROW((void)pyramid.render(view), Error);
     scenes::Scene nothing;
     nothing.scenes.resize(1);
     PyramidShadowRenderer empty(nothing, scenes::take_snapshot(nothing), {.resolution = 64});
-    view.shadow_rays = 1;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 1};
     for (const float share : empty.light_shares(view).shares)
         ASSERT_EQ(share, -1.0F);
 }
@@ -294,8 +296,8 @@ TEST_F(PyramidShadows, RealScenesThatMoveAreNearEmbreeAtEveryFrame) {
             const auto shares = moving.light_shares(view).shares;
             const scenes::Snapshot snapshot = scenes::take_snapshot(scene, when);
             const reference::ImageTracer tracer(scene, snapshot);
-            const reference::ShadowQuestion question{scene,      snapshot,   all,        view.camera,
-                                                     view.light, view.width, view.height};
+            const reference::ShadowQuestion question{
+                scene, snapshot, all, view.camera, view.light, view.size.width, view.size.height};
             const auto receivers = reference::shadow_receivers(tracer, question);
             const auto truth = reference::soft_shares(tracer, question, receivers,
                                                       {.standard_error = 1.0 / 256, .least_samples = 64})
