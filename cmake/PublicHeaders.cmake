@@ -50,6 +50,7 @@ set(cairn_public_headers
   voxelizer/grid.h
   voxelizer/methods/voxelize_tiles.h
   voxelizer/methods/voxelizer.h
+  voxelizer/surface/moving_surface.h
   voxelizer/surface/surface.h
   voxelizer/surface/triangle_index.h)
 
