@@ -27,7 +27,7 @@ struct Bounds {
 /// Snapshot where a skin or morph targets moved the vertices.
 struct Item {
     const Primitive* primitive = nullptr;
-    std::span<const glm::vec3> positions;  ///< mesh space; one a vertex
+    std::span<const glm::vec3> positions;  ///< mesh space; one per vertex
     std::span<const glm::vec3> normals;    ///< mesh space; empty when the file has none
     glm::dmat4 world_from_mesh{1.0};
     int node = -1;         ///< into Scene::nodes

@@ -88,10 +88,6 @@ glm::i64vec3 Grid::lattice_from_world(const glm::dvec3& world) const {
     return nearest;
 }
 
-glm::dvec3 Grid::world_from_lattice(const glm::dvec3& lattice) const {
-    return origin + lattice * lattice_unit();
-}
-
 Grid grid_around(const scenes::Bounds& bounds, const glm::ivec3& resolution) {
     check_resolution(resolution);
     const int longest = std::max({resolution.x, resolution.y, resolution.z});

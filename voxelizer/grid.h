@@ -26,17 +26,16 @@ struct Grid {
     double voxel_size = 1.0;
     glm::ivec3 resolution{0};  ///< voxels along x, y, z; each in [1, 2^24]
 
-    /// The root cube is 2^level voxels a side: the smallest that holds the longest axis.
+    /// The root cube is 2^level voxels along each side: the smallest that holds the longest axis.
     [[nodiscard]] int level() const;
     /// Side of a lattice unit in the world.
     [[nodiscard]] double lattice_unit() const;
-    /// Lattice units a world unit: what lattice_from_world multiplies by. A product, because a quotient of
+    /// Lattice units per world unit: what lattice_from_world multiplies by. A product, because a quotient of
     /// doubles is not rounded alike by all drivers, and shaders/voxelize/deform.comp.glsl must agree.
     [[nodiscard]] double lattice_scale() const;
     /// Nearest lattice point, floor((world - origin) * lattice_scale() + 1/2); not limited to the root cube.
     /// @throws Error (Fault::input) past +-lattice_world_limit units.
     [[nodiscard]] glm::i64vec3 lattice_from_world(const glm::dvec3& world) const;
-    [[nodiscard]] glm::dvec3 world_from_lattice(const glm::dvec3& lattice) const;
 };
 
 /// The default grid: around the bounds, centred, with the least voxels that leave one empty on each side of
@@ -59,7 +58,7 @@ constexpr int MAX_GRID_RESOLUTION = 1 << lattice_bits;
 /// Voxels of a given size , as many as it takes to leave one empty on each side of every
 /// axis; centred. Empty bounds give one voxel at the world's origin.
 /// @param voxel_size  world units, above 0
-/// @param limit       of voxels along an axis
+/// @param limit       the most voxels along an axis
 /// @throws Error      Fault::usage past the limit; says which size would fit.
 [[nodiscard]] Grid grid_of_voxels_around(const scenes::Bounds& bounds, double voxel_size,
                                          int limit = MAX_GRID_RESOLUTION);
@@ -76,7 +75,7 @@ struct Region {
     glm::ivec3 origin{0};
     glm::ivec3 size{0};
 
-    /// Lattice units a voxel.
+    /// Lattice units along the side of a voxel.
     [[nodiscard]] int voxel_side() const { return 1 << (lattice_bits - level); }
 };
 

@@ -43,7 +43,6 @@ public:
     };
     [[nodiscard]] const Counters& counters() const { return counters_; }
     [[nodiscard]] std::size_t size_bytes() const { return order_.size() * (brick_bytes_ + record_bytes); }
-    [[nodiscard]] std::size_t brick_count() const { return order_.size(); }
 
 private:
     struct Brick {

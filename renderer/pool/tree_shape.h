@@ -110,8 +110,5 @@ struct TileHash {
     const int bit = mask_bit(n, child);
     return (child_mask[bit / 32] >> (bit % 32) & 1U) != 0;
 }
-[[nodiscard]] inline Tile parent_of(const Tile& tile, int n) {
-    return {tile.level - 1, tile.position / std::int64_t(n)};
-}
 
 }  // namespace cairn::renderer

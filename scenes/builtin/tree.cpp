@@ -43,7 +43,7 @@ struct Branch {
     std::size_t order = 0;
     double length = 0.0;
     std::vector<glm::dvec3> points;
-    std::vector<glm::dvec3> directions;  ///< unit, one a point
+    std::vector<glm::dvec3> directions;  ///< of length 1, one per point
     std::vector<double> radii;
 };
 

@@ -12,11 +12,11 @@ enum class Kind {
     number,
     numbers,
     whole,      ///< 0, 1, 2, ... up to 2^53
-    whole_int,  ///< the same, up to 2^31 - 1: what tinygltf keeps in an int
+    whole_int,  ///< 0, 1, 2, ... up to 2^31 - 1: what tinygltf keeps in an int
     index,      ///< into the array `target`
     indices,
     index_map,   ///< an object of indices: the attributes of a primitive
-    index_maps,  ///< its morph targets
+    index_maps,  ///< an array of such objects: the morph targets of a primitive
     any_object,  ///< kept as it is
     object,
     objects,

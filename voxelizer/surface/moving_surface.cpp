@@ -44,8 +44,8 @@ struct MovingSurface::Impl {
     gl::Program deform_;
     gl::Program find_far_;
     std::vector<MovingItem> items_;
-    std::vector<std::uint32_t> first_joints_;  ///< one a skin: its first matrix; DEFORM_NONE: not in use
-    std::vector<double> matrices_;             ///< twelve numbers each
+    std::vector<std::uint32_t> first_joints_;  ///< per skin its first matrix; DEFORM_NONE: not used
+    std::vector<double> matrices_;             ///< twelve numbers per matrix
     gl::Buffer matrix_buffer_;
     std::vector<MovingChunk> chunks_;
     GpuSurface on_gpu_;
