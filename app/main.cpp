@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "app/subject/volume_input.h"
 #include "app/terminal/exit_code.h"
 #include "app/terminal/terminal.h"
 #include "app/verbs/verbs.h"
 #include "base/error.h"
+#include "renderer/open_content.h"
 #include "scenes/builtin/builtin.h"
 
 namespace cairn::app {
@@ -17,7 +17,9 @@ std::string footer() {
     for (const scenes::Builtin& builtin : scenes::builtins()) {
         text += fmt::format("  builtin:{:<14}{}\n", builtin.name, builtin.description);
     }
-    text += builtin_volumes_help();
+    for (const renderer::BuiltinVolume& builtin : renderer::builtin_volumes()) {
+        text += fmt::format("  builtin:{:<14}{}\n", builtin.name, builtin.description);
+    }
     text +=
         "\nExit codes: 0 done, 1 a comparison found a difference, 2 wrong usage, 3 bad input file,\n"
         "4 no usable OpenGL 4.5 context, 5 out of memory, 130 interrupted.\n"

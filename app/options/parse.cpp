@@ -8,12 +8,10 @@
 #include <glm/glm.hpp>
 
 #include "base/error.h"
+#include "renderer/view/view.h"
 
 namespace cairn::app {
 namespace {
-
-/// The largest side of a viewport that OpenGL 4.5 promises.
-constexpr int max_image_side = 16384;
 
 template <typename Number>
 std::optional<Number> read_whole(std::string_view text) {
@@ -94,7 +92,8 @@ std::pair<int, int> parse_size(std::string_view option, std::string_view text) {
         throw Error(Fault::usage, std::string(option), fmt::format("\"{}\" is not WIDTHxHEIGHT", text),
                     "for example 1024x768");
     }
-    return {parse_int(option, parts[0], 1, max_image_side), parse_int(option, parts[1], 1, max_image_side)};
+    return {parse_int(option, parts[0], 1, renderer::MAX_PICTURE_SIDE),
+            parse_int(option, parts[1], 1, renderer::MAX_PICTURE_SIDE)};
 }
 
 }  // namespace cairn::app

@@ -33,9 +33,8 @@ struct ShadowOptions {
     std::optional<glm::dvec3> target;        ///< what a rectangle or a disk shines on
     std::vector<std::string> occluders, receivers;
     renderer::SoftShadowOptions map;
-    bool map_given = false;                       ///< any of its options
-    bool ground = false;                          ///< a plane is added under the scene
-    const CLI::Option* max_resolution = nullptr;  ///< to ask whether it was given
+    bool map_given = false;  ///< any of its options
+    bool ground = false;     ///< a plane is added under the scene
     int truth_samples = 256;
     std::optional<std::filesystem::path> truth_cache;
 };

@@ -9,6 +9,7 @@
 #include "app/terminal/progress.h"
 #include "reference/shadow_truth.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/open_content.h"
 #include "renderer/pyramid_shadow.h"
 #include "renderer/soft_shadow.h"
 
@@ -22,7 +23,8 @@ optics::Image lit_image(const ShadowTask& task, const reference::ShadowReceivers
                         const std::vector<float>& shares) {
     const reference::ReferenceImage& seen = receivers.seen;
     const renderer::View& view = task.view;
-    optics::Image image{view.width, view.height, std::vector<std::uint8_t>(4 * seen.depth.size(), 255)};
+    optics::Image image{view.size.width, view.size.height,
+                        std::vector<std::uint8_t>(4 * seen.depth.size(), 255)};
     const auto encoded = [](float linear) {
         const float c = std::clamp(linear, 0.0F, 1.0F);
         const float srgb = c <= 0.0031308F ? 12.92F * c : 1.055F * std::pow(c, 1.0F / 2.4F) - 0.055F;
@@ -48,17 +50,23 @@ optics::Image lit_image(const ShadowTask& task, const reference::ShadowReceivers
 
 ShadowResult shadow_by_voxels(const ShadowTask& task, const ShadowOptions& options) {
     const gl::ShaderSource& shaders = options.common.driver.shaders;
-    renderer::Renderer renderer(task.input.scene, task.shown, options.view.tree, shaders);
+    renderer::Renderer renderer(
+        renderer::surface_content(task.input.scene, task.shown, {.max_resolution = tree_resolution(options)},
+                                  shaders),
+        {.pools = options.view.pools}, shaders);
     renderer.set_mix({.meshes = std::make_shared<renderer::MeshRaster>(task.input.scene, task.shown, shaders),
                       .mesh_shadows = true,
                       .meshes_are_voxelized = true,
                       .voxels_hidden = true});
     Progress progress("shadowing", options.common.report.quiet);
     ShadowResult result;
-    result.image = renderer.render(task.view, [&](double share) { progress.set(share); });
-    result.first_frame_ms = renderer.statistics().milliseconds;
-    result.shares = renderer.light_shares(task.view).shares;
-    result.milliseconds = renderer.statistics().milliseconds;
+    renderer::Frame first =
+        renderer.render(task.view, {.progress = [&](double share) { progress.set(share); }});
+    result.image = std::move(first.image);
+    result.first_frame_ms = first.statistics.milliseconds;
+    renderer::LightFrame shadow = renderer.light(task.view);
+    result.shares = std::move(shadow.light.shares);
+    result.milliseconds = shadow.statistics.milliseconds;
     return result;
 }
 
@@ -93,11 +101,11 @@ ShadowResult shadow_by_embree(const ShadowTask& task, const ShadowOptions& optio
     const renderer::View& view = task.view;
     Stopwatch watch;
     const reference::ImageTracer tracer(task.input.scene, task.shown);
-    const reference::ShadowQuestion question{task.input.scene, task.shown, task.receivers, view.camera,
-                                             view.light,       view.width, view.height};
+    const reference::ShadowQuestion question{task.input.scene, task.shown,      task.receivers,  view.camera,
+                                             view.light,       view.size.width, view.size.height};
     const reference::ShadowReceivers receivers = shadow_receivers(tracer, question);
     ShadowResult result;
-    if (task.is_soft) {
+    if (renderer::is_soft(view)) {
         reference::SoftShares soft =
             soft_shares(tracer, question, receivers, {.least_samples = options.truth_samples}, cache);
         result.milliseconds = soft.milliseconds;

@@ -64,19 +64,19 @@ ExitCode run(const ShadowOptions& options) {
     report.add("method", name_of(method, shadow_method_names()));
     report.add("load_ms", watch.lap_ms());
     report.add("triangles", task.shown.triangle_count);
-    report.add("width", task.view.width);
-    report.add("height", task.view.height);
+    report.add("width", task.view.size.width);
+    report.add("height", task.view.size.height);
     // Rays of Embree need no OpenGL.
     std::optional<Driver> driver;
     if (method != ShadowMethod::embree) driver.emplace(options.common.driver);
     const ShadowResult shadow = shadow_by(method, task, options);
     if (driver) driver->check();
     if (method == ShadowMethod::voxel) {
-        report.add("rays", task.is_soft ? task.view.shadow_rays : 1);
-        report.add("max_resolution", options.view.tree.max_resolution);
+        report.add("rays", renderer::shadow_samples(task.view));
+        report.add("max_resolution", tree_resolution(options));
     }
     if (method == ShadowMethod::pyramid) {
-        report.add("rays", task.is_soft ? task.view.shadow_rays : 1);
+        report.add("rays", renderer::shadow_samples(task.view));
         report.add("max_resolution", pyramid_resolution(options));
         report.add("voxelize_ms", shadow.voxelize_ms);
         report.add("pyramid_ms", shadow.pyramid_ms);
