@@ -10,14 +10,16 @@
 namespace cairn::gl {
 
 enum class ContextKind {
-    automatic,  ///< EGL where it offers hardware, else OSMesa, else EGL's software driver
-    osmesa,     ///< Mesa's off-screen software rasterizer
-    egl,        ///< no window: a device, or Mesa's surfaceless platform
+    /// EGL where it offers hardware, else OSMesa, else EGL's software driver.
+    automatic,
+    osmesa,  ///< Mesa's off-screen software rasterizer
+    egl,     ///< no window: a device, or Mesa's surfaceless platform
 };
 
 struct ContextOptions {
     ContextKind kind = ContextKind::automatic;
-    bool debug = false;  ///< KHR_debug on: `Context::debug_log` gathers errors and undefined behaviour
+    /// KHR_debug on: `Context::debug_log` gathers errors and undefined behaviour.
+    bool debug = false;
 };
 
 /// An OpenGL 4.5 core context with no window. Current on the thread that made it until it is destroyed.

@@ -65,7 +65,8 @@ struct ShadowError {
     std::size_t shadowed = 0;   ///< pixels where less than half of the light arrives in truth
     std::size_t too_light = 0;  ///< half of the light and more arrives, where in truth less does
     std::size_t too_dark = 0;   ///< the other way round
-    std::size_t in_shadow = 0;  ///< pixels in shadow or penumbra: not all of the light arrives in truth
+    /// Pixels in shadow or penumbra: not all of the light arrives in truth.
+    std::size_t in_shadow = 0;
     double absolute_sum = 0.0;
     double square_sum = 0.0;
     double greatest = 0.0;

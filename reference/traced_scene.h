@@ -78,7 +78,8 @@ private:
     const optics::Light& light_;
     glm::ivec2 size_;
     glm::dvec3 eye_, centre_, forward_, right_, up_;
-    float gap_;  ///< shadow rays start so far from the surface, not to meet it again
+    /// Shadow rays start so far from the surface, not to meet it again.
+    float gap_;
 };
 
 }  // namespace cairn::reference

@@ -35,7 +35,8 @@ struct Texture {
 
 enum class AlphaMode : std::uint8_t {
     opaque,
-    mask,   ///< a texel whose alpha is under the cutoff is a hole in the surface
+    /// A texel whose alpha is under the cutoff is a hole in the surface.
+    mask,
     blend,  ///< counts as surface
 };
 

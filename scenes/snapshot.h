@@ -55,7 +55,8 @@ struct Snapshot {
     std::vector<Item> items;
     std::vector<PlacedLight> lights;
     std::vector<PlacedCamera> cameras;
-    Bounds bounds;  ///< exact bounds of all vertices that a primitive uses, in world space
+    /// Exact bounds of all vertices that a primitive uses, in world space.
+    Bounds bounds;
     std::uint64_t triangle_count = 0;
     std::uint64_t line_count = 0;
     std::uint64_t point_count = 0;

@@ -36,7 +36,8 @@ struct BitGrid {
 
 /// Along which axes the levels of a pyramid halve (Forest et al. 2009, section 2.3, Figure 4).
 enum class Reduction : std::uint8_t {
-    xy,   ///< Figure 4a: every level keeps all slices of z, so that one look-up reads a column
+    /// Figure 4a: every level keeps all slices of z, so that one look-up reads a column.
+    xy,
     xyz,  ///< Figure 4b: the standard octree
 };
 

@@ -30,7 +30,8 @@ struct Property {
     Kind kind;
     bool required = false;
     const char* target = nullptr;  ///< index kinds: JSON pointer to the array that they point into
-    std::size_t length = 0;  ///< numbers: how many, 0 = any; objects: at most how many, 0 = most_elements
+    /// Numbers: how many, 0 = any; objects: at most how many, 0 = most_elements.
+    std::size_t length = 0;
     const Shape* inside = nullptr;  ///< object, objects
     const char* label = "";         ///< objects: what messages call one of them
 };

@@ -20,7 +20,8 @@ namespace cairn::voxelizer {
 /// How a primitive finds its layer.
 enum class LayerPath : std::uint8_t {
     geometry_shader,  ///< OpenGL 4.5 alone
-    vertex_shader     ///< ARB_shader_viewport_layer_array, and storage buffers in vertex shaders
+    /// ARB_shader_viewport_layer_array, and storage buffers in vertex shaders.
+    vertex_shader
 };
 
 /// Voxelizes by rasterization into one bit per slice: the methods of Forest et al. 2009, section 2, to

@@ -22,7 +22,8 @@ constexpr int max_region_side = 16384;
 
 /// How voxels are found. Only `conservative` is exact; the others are Forest et al.'s, to compare with.
 enum class Method : std::uint8_t {
-    conservative,             ///< every voxel whose closed box meets a triangle: conservative_voxelizer.h
+    /// Every voxel whose closed box meets a triangle: conservative_voxelizer.h.
+    conservative,
     slice_map,                ///< rasterized along z: raster_voxelizer.h
     three_axis,               ///< rasterized along x, y and z: raster_voxelizer.h
     three_axis_conservative,  ///< three_axis with enlarged triangles
