@@ -32,12 +32,12 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// The same for one region alone.
+/// The exact voxels of one region alone.
 [[nodiscard]] voxelizer::BitGrid exact_voxels(const voxelizer::Surface& surface,
                                               const voxelizer::Region& region);
 
 struct Comparison {
-    std::uint64_t occupied = 0;               ///< in the truth
+    std::uint64_t occupied = 0;               ///< voxels that are occupied in the truth
     std::uint64_t missing = 0;                ///< occupied in the truth only
     std::uint64_t extra = 0;                  ///< occupied in ours only
     std::vector<glm::ivec3> first_different;  ///< at most eight, by z, y, x

@@ -231,7 +231,7 @@ glm::vec3 shade(const TracedScene& scene, const PictureRays& rays, const Shading
 }  // namespace
 
 ShadedImage ImageTracer::shade(const optics::Camera& camera, const optics::Light& light,
-                               const Shading& shading, int width, int height, int samples_a_side) const {
+                               const Shading& shading, int width, int height, int samples_per_side) const {
     const TracedScene& scene = impl_->scene;
     const PictureRays rays(camera, light, scene, {width, height});
     ShadedImage image;
@@ -239,15 +239,15 @@ ShadedImage ImageTracer::shade(const optics::Camera& camera, const optics::Light
     image.height = height;
     image.srgb.resize(std::size_t(width) * std::size_t(height));
     image.coverage.resize(image.srgb.size());
-    const float share = 1.0F / float(samples_a_side * samples_a_side);
+    const float share = 1.0F / float(samples_per_side * samples_per_side);
     const auto start = Clock::now();
     tbb::parallel_for(0, height, [&](int y) {
         for (int x = 0; x < width; ++x) {
             glm::vec3 sum(0.0F);
             float covered = 0.0F;
-            for (int s = 0; s < samples_a_side * samples_a_side; ++s) {
-                const glm::dvec2 in_pixel((s % samples_a_side + 0.5) / samples_a_side,
-                                          (s / samples_a_side + 0.5) / samples_a_side);
+            for (int s = 0; s < samples_per_side * samples_per_side; ++s) {
+                const glm::dvec2 in_pixel((s % samples_per_side + 0.5) / samples_per_side,
+                                          (s / samples_per_side + 0.5) / samples_per_side);
                 const glm::vec3 light_seen =
                     reference::shade(scene, rays, shading, rays.direction(glm::dvec2(x, y) + in_pixel));
                 covered += light_seen.x < 0.0F ? 0.0F : share;

@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "bench/peers/row_spans.h"
+#include "shaders/interop/config.h"
 #include "voxelizer/surface/exact_mask.h"
 #include "voxelizer/surface/far_triangles.h"
 

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "shaders/interop/config.h"
+#include "shaders/interop/types.h"
 
 namespace cairn::bench {
 namespace {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "renderer/march/march_options.h"
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::size_t word_bytes = sizeof(std::uint32_t);
 constexpr std::size_t list_offset = sizeof(interop::MarchCounters);
+static_assert(max_query_capacity == QUERY_CAPACITY, "the shaders hold another number of queries");
 constexpr std::size_t counts_offset = list_offset + QUERY_CAPACITY * word_bytes;
 constexpr std::size_t urgent_offset = counts_offset + QUERY_COUNTS * word_bytes;
 constexpr std::size_t buffer_bytes = urgent_offset + QUERY_RANKS * word_bytes;

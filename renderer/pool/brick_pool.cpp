@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 
 #include "base/error.h"
 #include "gl/limits.h"
@@ -19,7 +20,7 @@ gl::TextureHandle make_texture(GLenum format, glm::ivec3 size, GLint filter) {
     glTextureStorage3D(id, 1, format, size.x, size.y, size.z);
     if (glGetError() == GL_OUT_OF_MEMORY) {
         throw Error(Fault::memory, "brick pool", "the driver has no room for it",
-                    "choose a smaller --brick-pool");
+                    "choose a smaller PoolSizes::brick_bytes");
     }
     glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, filter);
     glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, filter);

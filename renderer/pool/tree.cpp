@@ -4,6 +4,7 @@
 #include <functional>
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 
 #include "base/error.h"
 #include "gl/limits.h"

@@ -9,6 +9,8 @@
 
 namespace cairn::renderer {
 
+static_assert(max_window_tile_bits == WINDOW_TILE_BITS, "the shaders have other windows");
+
 /// Positions of voxels and their borders stay within 63 bits.
 constexpr int most_voxel_bits = 60;
 

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "gl/program.h"
+#include "gl/shader_source.h"
 
 namespace cairn::renderer {
 

@@ -8,9 +8,13 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "shaders/interop/config.h"
 
 namespace cairn::renderer {
 namespace {
+
+static_assert(density_steps == DENSITY_STEPS && volume_most_steps == VOLUME_MOST_STEPS,
+              "the shaders tell other densities apart");
 
 constexpr double step = 1.0 / (DENSITY_STEPS - 1);
 

@@ -5,9 +5,12 @@
 
 #include <glm/glm.hpp>
 
-#include "shaders/interop/config.h"
-
 namespace cairn::renderer {
+
+/// Densities that a brick tells apart, from 0 to 1 (DENSITY_STEPS in the shaders).
+constexpr int density_steps = 256;
+/// The most that VolumeOptions::steps_per_voxel can be (VOLUME_MOST_STEPS in the shaders).
+constexpr int volume_most_steps = 32;
 
 /// What one density looks like.
 struct ControlPoint {
@@ -31,16 +34,16 @@ public:
     /// Mean of optics() while the density goes evenly from one value to the other.
     [[nodiscard]] glm::dvec4 mean_optics(int from, int to) const;
     /// Which of the stored densities have an extinction.
-    [[nodiscard]] std::array<bool, DENSITY_STEPS> visible() const;
+    [[nodiscard]] std::array<bool, density_steps> visible() const;
 
 private:
-    std::array<glm::dvec4, DENSITY_STEPS> optics_{};
-    std::array<glm::dvec4, DENSITY_STEPS> integral_{};  // from density 0 to each
+    std::array<glm::dvec4, density_steps> optics_{};
+    std::array<glm::dvec4, density_steps> integral_{};  // from density 0 to each
 };
 
 /// How rays go through a volume.
 struct VolumeOptions {
-    int steps_per_voxel = 2;  ///< of a voxel's chord, [1, VOLUME_MOST_STEPS]
+    int steps_per_voxel = 2;  ///< of a voxel's chord, [1, volume_most_steps]
     double full_gradient =
         0.08;  ///< densities a voxel: so steep, a place is lit as a surface; 0: lit as fog everywhere
     /// Voxels of the level that is seen: a shadow ray leaves out so much of the volume next to where it

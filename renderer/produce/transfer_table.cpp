@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 
 #include "base/error.h"
 #include "shaders/interop/bindings.h"

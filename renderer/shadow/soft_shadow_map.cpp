@@ -43,7 +43,7 @@ gl::FramebufferHandle make_target(const gl::TextureHandle& first, const gl::Text
     glNamedFramebufferDrawBuffers(id, second != nullptr ? 2 : 1, buffers.data());
     if (glCheckNamedFramebufferStatus(id, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         throw Error(Fault::context, "soft shadow map",
-                    fmt::format("\"{}\" cannot draw to it", gl::driver_name()), "choose another --context");
+                    fmt::format("\"{}\" cannot draw to it", gl::driver_name()), "choose another ContextOptions::kind");
     }
     return framebuffer;
 }
@@ -64,7 +64,7 @@ void require_blending(GLenum format) {
     throw Error(
         Fault::context, "soft shadow map",
         fmt::format("\"{}\" does not blend {}-bit floats", gl::driver_name(), format == GL_R16F ? 16 : 32),
-        "choose another --context");
+        "choose another ContextOptions::kind");
 }
 
 ShadowMapValues read_map(const gl::TextureHandle& texture, int size) {

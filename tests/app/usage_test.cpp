@@ -180,6 +180,19 @@ TEST(AppInput, DamagedFilesAreCode3AndLeaveNoOutput) {
     }
 }
 
+TEST(AppInput, APathThatIsNotTrustedNamesTheOptionThatTrustsIt) {
+    const ScratchFolder folder;
+    write_text(folder.path() / "away.gltf",
+               R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "../away.bin", "byteLength": 4}]})");
+    expect_error(cairn({"info", folder.file("away.gltf")}), 3,
+                 "if you trust the file, allow it with --trust-paths");
+}
+
+TEST(AppUsage, AMethodThatDoesNotExistIsNamedWithItsOption) {
+    expect_error(cairn({"voxelize", "builtin:cornell", "-r", "8", "--method", "cubes"}), 2,
+                 "--method: there is no method \"cubes\"");
+}
+
 TEST(AppInput, ControlCharactersOfAFileStayOutOfTheTerminal) {
     const ScratchFolder folder;
     GltfFile file;
@@ -335,6 +348,7 @@ TEST(AppDriver, WithoutOpenGl45EglNamesTheDriverAndWhatItOffers) {
     const Answer answer = cairn({"voxelize", "builtin:cornell", "-r", "16", "--context", "egl"}, old_driver);
     expect_error(answer, 4, "driver \"");
     expect_contains(answer.err, "4.5 core is needed, it offers 3.3");
+    expect_contains(answer.err, "update the driver, or choose another --context");
 }
 
 #ifdef CAIRN_HAS_OSMESA

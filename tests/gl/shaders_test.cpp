@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 #include <gtest/gtest.h>
 
 #include "gl/handle.h"

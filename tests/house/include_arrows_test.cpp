@@ -97,6 +97,8 @@ const std::vector<External> externals = {
     {"CLI/", {"app/"}},
     {"EGL/", {"gl/"}},
     {"GL/osmesa", {"gl/"}},
+    {"glad/", {"gl/", "voxelizer/", "renderer/", "app/"}},
+    {"cairn/", {}},
 };
 
 bool begins_with_any(std::string_view path, const std::vector<std::string_view>& beginnings) {

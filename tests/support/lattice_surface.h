@@ -12,6 +12,8 @@
 #include "reference/exact_voxels.h"
 #include "reference/separating_axes.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/config.h"
+#include "shaders/interop/types.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::test {

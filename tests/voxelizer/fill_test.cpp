@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scenes/load.h"
+#include "shaders/interop/types.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/test_scenes.h"
 

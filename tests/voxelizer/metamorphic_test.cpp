@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/load.h"
+#include "shaders/interop/types.h"
 #include "tests/support/voxelizer_fixture.h"
 
 namespace cairn::voxelizer {

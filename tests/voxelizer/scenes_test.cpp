@@ -137,7 +137,8 @@ protected:
                            const Surface& whole_surface) {
         const double extent = whole_surface.grid.voxel_size * coarse;
         for (const double part : {1e-1, 1e-2, 1e-4}) {
-            const glm::dvec3 middle = whole_surface.grid.world_from_lattice(random_vertex(whole_surface));
+            const glm::dvec3 middle = whole_surface.grid.origin + glm::dvec3(random_vertex(whole_surface)) *
+                                                                      whole_surface.grid.lattice_unit();
             scenes::Bounds bounds;
             bounds.add(middle - 0.5 * part * extent);
             bounds.add(middle + 0.5 * part * extent);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "shaders/interop/types.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/scratch_folder.h"
 #include "voxelizer/files/write_npy.h"

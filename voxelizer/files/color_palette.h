@@ -38,8 +38,8 @@ private:
     [[nodiscard]] glm::dvec3 mean_of(const Cells& cells) const;
     void move_to_means(const Cells& all);
 
-    std::map<std::uint32_t, std::uint8_t>
-        exact_;  ///< of 0xRRGGBB; one more than fits when there are too many
+    /// Index of each colour 0xRRGGBB. If there are more colours than the capacity, one more than fit.
+    std::map<std::uint32_t, std::uint8_t> exact_;
     std::vector<Cell> cells_ = std::vector<Cell>(64 * 64 * 64);
     std::vector<glm::u8vec3> colors_;
     std::vector<std::uint8_t> index_of_cell_;

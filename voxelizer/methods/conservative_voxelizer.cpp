@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "gl/limits.h"
 #include "shaders/interop/bindings.h"
+#include "shaders/interop/config.h"
 #include "voxelizer/surface/far_triangles.h"
 
 namespace cairn::voxelizer {

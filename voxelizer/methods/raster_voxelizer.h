@@ -20,11 +20,12 @@ namespace cairn::voxelizer {
 /// How a primitive finds its layer.
 enum class LayerPath : std::uint8_t {
     geometry_shader,  ///< OpenGL 4.5 alone
-    vertex_shader     ///< ARB_shader_viewport_layer_array, and storage buffers in vertex shaders
+    /// ARB_shader_viewport_layer_array, and storage buffers in vertex shaders.
+    vertex_shader
 };
 
-/// Voxelizes by rasterization into one bit a slice: the methods of Forest et al. 2009, section 2, to compare
-/// with. None of them is exact (`cairn check` counts how far off they are).
+/// Voxelizes by rasterization into one bit per slice: the methods of Forest et al. 2009, section 2, to
+/// compare with. None of them is exact (`cairn check` counts how far off they are).
 ///
 /// `slice_map` looks along z alone, as Eisemann and Décoret 2006: a fragment marks the voxel at its pixel's
 /// centre. Surfaces steep to z have holes, and what is parallel to z vanishes.
@@ -46,7 +47,7 @@ enum class LayerPath : std::uint8_t {
 /// points more than 2^16 voxels away bend by the driver's rounding. What lies within a float's rounding of a
 /// boundary may fall to another side in another region.
 ///
-/// Memory: targets of one bit a voxel and direction, at most RASTER_TARGET_MIB at a time, and 16 MiB of
+/// Memory: targets of one bit per voxel and direction, at most RASTER_TARGET_MIB at a time, and 16 MiB of
 /// lists.
 class RasterVoxelizer final : public Voxelizer {
 public:

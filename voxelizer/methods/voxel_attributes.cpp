@@ -12,6 +12,7 @@
 #include "gl/limits.h"
 #include "shaders/interop/bindings.h"
 #include "shaders/interop/config.h"
+#include "shaders/interop/types.h"
 #include "voxelizer/methods/masked_marker.h"
 #include "voxelizer/methods/pyramid_builder.h"
 #include "voxelizer/surface/far_clip.h"

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "shaders/interop/config.h"
 #include "voxelizer/files/voxel_tiles.h"
 #include "voxelizer/methods/pyramid_builder.h"
 

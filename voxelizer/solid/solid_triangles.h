@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "shaders/interop/config.h"
+#include "shaders/interop/types.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::voxelizer {

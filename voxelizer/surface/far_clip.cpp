@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "shaders/interop/config.h"
+#include "shaders/interop/types.h"
 
 namespace cairn::voxelizer {
 namespace {

@@ -1,5 +1,6 @@
 #include "gl/limits.h"
 #include "shaders/interop/bindings.h"
+#include "shaders/interop/types.h"
 #include "voxelizer/surface/surface.h"
 #include "voxelizer/surface/upload_array.h"
 

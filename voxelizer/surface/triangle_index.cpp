@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "shaders/interop/config.h"
+#include "shaders/interop/types.h"
+
 namespace cairn::voxelizer {
 namespace {
 

@@ -72,8 +72,11 @@ TEST(TreeShapeTest, EveryTileHasItsOwnHashAndItsParent) {
                     hashes.insert(TileHash{}(tile));
                     ++tiles;
                     for (const int n : {2, 3, 4, 8}) {
-                        for (int child = 0; child < n * n * n; ++child)
-                            ASSERT_EQ(parent_of(child_of(tile, n, child), n), tile) << "N = " << n;
+                        for (int child = 0; child < n * n * n; ++child) {
+                            const Tile below = child_of(tile, n, child);
+                            const Tile parent{below.level - 1, below.position / std::int64_t(n)};
+                            ASSERT_EQ(parent, tile) << "N = " << n;
+                        }
                     }
                 }
             }

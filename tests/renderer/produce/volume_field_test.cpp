@@ -3,6 +3,7 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"

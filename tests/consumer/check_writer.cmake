@@ -1,0 +1,26 @@
+# cmake -DWRITER=.../WriteHeaders.cmake -DFOLDER=... -P check_writer.cmake
+cmake_policy(VERSION 3.25)
+file(REMOVE_RECURSE "${FOLDER}")
+file(WRITE "${FOLDER}/from/base/error.h" "#pragma once\n#include <string>\n")
+file(WRITE "${FOLDER}/from/gl/buffer.h" "#pragma once\n\n#include \"base/error.h\"\n// #include \"it says\"\n")
+file(WRITE "${FOLDER}/from/gl/handle.h" "#include <glad/gl.h>\n")
+file(WRITE "${FOLDER}/from/gl/program.h" "#  include \"gl/hidden.h\"\n")
+
+function(write_headers expected_fault)
+  execute_process(COMMAND ${CMAKE_COMMAND} "-DHEADERS=${ARGN}" "-DFROM=${FOLDER}/from" "-DTO=${FOLDER}/to" -P ${WRITER}
+                  RESULT_VARIABLE code ERROR_VARIABLE text OUTPUT_QUIET)
+  if(expected_fault STREQUAL "" AND NOT code EQUAL 0)
+    message(FATAL_ERROR "refused: ${text}")
+  elseif(NOT expected_fault STREQUAL "" AND (code EQUAL 0 OR NOT text MATCHES "${expected_fault}"))
+    message(FATAL_ERROR "expected \"${expected_fault}\", got ${code}: ${text}")
+  endif()
+endfunction()
+
+write_headers("" base/error.h gl/buffer.h)
+file(READ "${FOLDER}/to/gl/buffer.h" written)
+if(NOT written STREQUAL "#pragma once\n\n#include \"cairn/base/error.h\"\n// #include \"it says\"\n")
+  message(FATAL_ERROR "written: ${written}")
+endif()
+write_headers("gl/buffer.h includes .base/error.h., which is not" gl/buffer.h)
+write_headers("gl/handle.h includes <glad/gl.h>" gl/handle.h)
+write_headers("gl/program.h includes .gl/hidden.h." gl/program.h base/error.h)
