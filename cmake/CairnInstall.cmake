@@ -5,7 +5,9 @@ set(cairn_config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/cairn")
 get_property(cairn_libraries GLOBAL PROPERTY CAIRN_LIBRARIES)
 get_property(glad_includes GLOBAL PROPERTY CAIRN_GLAD_INCLUDES)
 
-install(TARGETS cairn_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(CAIRN_APP)
+  install(TARGETS cairn_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 install(TARGETS ${cairn_libraries} EXPORT cairnTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT cairnTargets NAMESPACE cairn:: DESTINATION ${cairn_config_dir})
 
