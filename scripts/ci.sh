@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# One stage of what runs before a change is taken. .ci/run and .github/workflows/ci.yml call the same stages.
+#
+#   scripts/ci.sh lint    scripts/lint.sh
+#   scripts/ci.sh test    every test, in release, with warnings as errors
+#   scripts/ci.sh clang   the same, built by clang
+#   scripts/ci.sh asan    under the address and undefined-behaviour sanitizers: the tests that draw no long frames
+#   scripts/ci.sh fuzz    each fuzzer for a minute
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+case ${1:-} in
+  lint)
+    scripts/setup.sh --lint
+    scripts/lint.sh
+    ;;
+  test) scripts/test.sh --preset ci ;;
+  clang)
+    scripts/setup.sh --clang
+    scripts/test.sh --preset ci-clang
+    ;;
+  asan) scripts/test.sh --preset asan-short ;;
+  fuzz)
+    scripts/setup.sh --clang
+    scripts/fuzz.sh 60
+    ;;
+  *)
+    echo "error: \"${1:-}\" is no stage of ci.sh: lint, test, clang, asan, fuzz" >&2
+    exit 2
+    ;;
+esac
