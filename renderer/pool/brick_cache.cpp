@@ -87,7 +87,8 @@ void BrickCache::start_reading(Reading& reading, const Tree::Evicted& evicted) c
     for (const BrickPool::Layer& layer : layers_) {
         const glm::ivec3 low = pool_.first_texel(evicted.slot, layer.mip);
         glGetTextureSubImage(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
-                             layer.format, layer.type, GLsizei(layer_bytes(layer)), gl::buffer_offset(offset));
+                             layer.format, layer.type, GLsizei(layer_bytes(layer)),
+                             gl::buffer_offset(offset));
         offset = aligned(offset + layer_bytes(layer));
     }
     const std::size_t mask_bytes = pool_.mask_bytes_a_slot();

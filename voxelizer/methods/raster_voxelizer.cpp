@@ -182,8 +182,7 @@ void RasterVoxelizer::draw_list(unsigned kind, unsigned count, const RasterTile&
         glDrawArraysInstanced(mode, 0, GLsizei(count * vertices), instances);
     } else {
         const std::size_t first = (RASTER_KINDS + kind * list_words) * sizeof(std::uint32_t);
-        glDrawElements(mode, GLsizei(count * corners_of(kind)), GL_UNSIGNED_INT,
-                       gl::buffer_offset(first));
+        glDrawElements(mode, GLsizei(count * corners_of(kind)), GL_UNSIGNED_INT, gl::buffer_offset(first));
     }
 }
 
