@@ -4,7 +4,8 @@
 #
 #   scripts/lint.sh                       every check on every file
 #   scripts/lint.sh format spelling       these checks: format, tidy, scripts, spelling
-#   scripts/lint.sh --changed             only files that differ from origin/main, or from main where there is no origin
+#   scripts/lint.sh --changed             only files that differ from origin/main, or from main where there is no origin;
+#                                         on main itself, from the commit before
 #   scripts/lint.sh format FILE ...       only these files
 #   scripts/lint.sh --fix                 formats, and mends what clang-tidy and codespell can mend
 #
@@ -49,7 +50,10 @@ listed() {
     elif $only_changed; then
       local base=origin/main
       git rev-parse --quiet --verify "$base" > /dev/null || base=main
-      git diff --name-only "$(git merge-base "$base" HEAD)" -- "$@"
+      base=$(git merge-base "$base" HEAD)
+      # On main itself: what its last commit, or last merge, brought.
+      if [[ $base == "$(git rev-parse HEAD)" ]]; then base=$(git rev-parse --quiet --verify HEAD^ || echo "$base"); fi
+      git diff --name-only "$base" -- "$@"
       git ls-files --others --exclude-standard -- "$@"
     else
       git ls-files --cached --others --exclude-standard -- "$@"
