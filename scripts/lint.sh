@@ -13,6 +13,11 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+if ! git rev-parse --is-inside-work-tree > /dev/null; then
+  echo "error: lint.sh asks git for the files of the project, and git does not answer here" >&2
+  exit 1
+fi
+
 fix=false
 only_changed=false
 checks=()
@@ -50,7 +55,8 @@ listed() {
     elif $only_changed; then
       local base=origin/main
       git rev-parse --quiet --verify "$base" > /dev/null || base=main
-      base=$(git merge-base "$base" HEAD)
+      # A clone without that much history: everything.
+      if ! base=$(git merge-base "$base" HEAD 2> /dev/null); then base=$(git hash-object -t tree /dev/null); fi
       # On main itself: what its last commit, or last merge, brought.
       if [[ $base == "$(git rev-parse HEAD)" ]]; then base=$(git rev-parse --quiet --verify HEAD^ || echo "$base"); fi
       git diff --name-only "$base" -- "$@"
