@@ -4,7 +4,9 @@ include(CMakePackageConfigHelpers)
 set(cairn_config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/cairn")
 get_property(cairn_libraries GLOBAL PROPERTY CAIRN_LIBRARIES)
 
-install(TARGETS cairn_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(CAIRN_APP)
+  install(TARGETS cairn_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 install(TARGETS ${cairn_libraries} EXPORT cairnTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT cairnTargets NAMESPACE cairn:: DESTINATION ${cairn_config_dir})
 

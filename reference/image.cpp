@@ -246,8 +246,8 @@ ShadedImage ImageTracer::shade(const optics::Camera& camera, const optics::Light
             glm::vec3 sum(0.0F);
             float covered = 0.0F;
             for (int s = 0; s < samples_per_side * samples_per_side; ++s) {
-                const glm::dvec2 in_pixel((s % samples_per_side + 0.5) / samples_per_side,
-                                          (s / samples_per_side + 0.5) / samples_per_side);
+                const glm::ivec2 cell(s % samples_per_side, s / samples_per_side);
+                const glm::dvec2 in_pixel = (glm::dvec2(cell) + 0.5) / double(samples_per_side);
                 const glm::vec3 light_seen =
                     reference::shade(scene, rays, shading, rays.direction(glm::dvec2(x, y) + in_pixel));
                 covered += light_seen.x < 0.0F ? 0.0F : share;

@@ -1,5 +1,6 @@
 #include "app/options/parse.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -62,9 +63,9 @@ std::vector<double> parse_numbers(std::string_view option, std::string_view text
                     fmt::format("\"{}\" has {} of the {} numbers it needs", text, parts.size(), wanted),
                     "write them with commas and no spaces: 1,2.5,-3");
     }
-    std::vector<double> numbers;
-    for (const std::string_view part : parts)
-        numbers.push_back(parse_number(option, part));
+    std::vector<double> numbers(parts.size());
+    std::ranges::transform(parts, numbers.begin(),
+                           [&](std::string_view part) { return parse_number(option, part); });
     return numbers;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "gl/buffer.h"
+#include "gl/buffer_offset.h"
 #include "gl/draw_state.h"
 #include "gl/handle.h"
 #include "gl/program.h"
@@ -191,7 +192,7 @@ void MeshRaster::Impl::draw_all(const gl::Program& drawing) {
             drawing.set("first", first);
             drawing.use();
             glDrawElements(GL_TRIANGLES, GLsizei(3 * count), GL_UNSIGNED_INT,
-                           reinterpret_cast<const void*>(std::size_t(first) * 3 * sizeof(std::uint32_t)));
+                           gl::buffer_offset(std::size_t(first) * 3 * sizeof(std::uint32_t)));
         }
     }
 }

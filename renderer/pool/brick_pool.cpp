@@ -7,6 +7,7 @@
 #include <glad/gl.h>
 
 #include "base/error.h"
+#include "gl/buffer_offset.h"
 #include "gl/limits.h"
 #include "shaders/interop/bindings.h"
 
@@ -149,9 +150,8 @@ void BrickPool::upload(int slot, const gl::Buffer& texels, std::size_t offset_by
     const int side = levels_.front().w;
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, texels.id());
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    // With a buffer bound, the pointer is an offset in it.
     glTextureSubImage3D(color_.id(), 0, texel.x, texel.y, texel.z, side, side, side, GL_RED, GL_UNSIGNED_BYTE,
-                        reinterpret_cast<const void*>(offset_bytes));
+                        gl::buffer_offset(offset_bytes));
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     glNamedBufferSubData(masks_.id(), GLintptr(std::size_t(slot) * mask_words_ * 8),

@@ -79,6 +79,7 @@ const std::vector<Folder> folders = {
     {"bench/trials/", and_all_libraries({"bench/trials/", "bench/peers/", "bench/plots/table.h"})},
     {"bench/charts/", and_all_libraries({"bench/charts/", "bench/trials/", "bench/peers/", "bench/plots/"})},
     {"tests/", {""}},
+    {"fuzz/", {""}},
 };
 
 /// A library of others that only some places may see, and tests/: the rest does not depend on it.
@@ -141,7 +142,7 @@ std::string fault_of(const fs::path& root, const std::string& file, bool quoted,
 std::vector<std::string> violations(const fs::path& root, int* include_count = nullptr) {
     static const std::regex include_line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
     constexpr std::array top_folders = {"shaders",   "base",     "gl",  "scenes", "optics", "voxelizer",
-                                        "reference", "renderer", "app", "tests",  "bench"};
+                                        "reference", "renderer", "app", "tests",  "bench",  "fuzz"};
     std::vector<std::string> found;
     for (const char* top : top_folders) {
         if (!fs::exists(root / top)) continue;

@@ -33,7 +33,9 @@ class VoxelWriter {
 public:
     virtual ~VoxelWriter() = default;
     VoxelWriter(const VoxelWriter&) = delete;
+    VoxelWriter(VoxelWriter&&) = delete;
     VoxelWriter& operator=(const VoxelWriter&) = delete;
+    VoxelWriter& operator=(VoxelWriter&&) = delete;
 
     [[nodiscard]] virtual bool wants_attributes() const { return false; }
     /// @throws Error as OutputFile does, or Fault::memory.

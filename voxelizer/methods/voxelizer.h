@@ -41,7 +41,9 @@ class Voxelizer {
 public:
     virtual ~Voxelizer();
     Voxelizer(const Voxelizer&) = delete;
+    Voxelizer(Voxelizer&&) = delete;
     Voxelizer& operator=(const Voxelizer&) = delete;
+    Voxelizer& operator=(Voxelizer&&) = delete;
 
     /// @param subset  global triangle numbers, or none for all. Must hold every triangle that meets the
     ///                region for the bits to be right; others cost time only. Far triangles are always

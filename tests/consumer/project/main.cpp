@@ -43,7 +43,7 @@ int main() {
         const cairn::optics::Image image = renderer.render(view).image;
         const auto [low, high] = std::minmax_element(image.rgba.begin(), image.rgba.end());
 
-        std::printf("Cairn %s: %llu voxels, pixels from %d to %d\n", CAIRN_VERSION_STRING,
+        std::printf("Cairn %s: %llu voxels, pixels from %d to %d\n", CAIRN_VERSION,
                     static_cast<unsigned long long>(occupied), *low, *high);
         return occupied != 0 && *low != *high ? 0 : 1;
     } catch (const cairn::Error& error) {
