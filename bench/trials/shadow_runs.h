@@ -8,6 +8,7 @@
 #include "bench/trials/shadow_scene.h"
 #include "gl/shader_source.h"
 #include "renderer/pyramid_shadow.h"
+#include "renderer/pool/tree_options.h"
 #include "renderer/renderer.h"
 
 namespace cairn::bench {
