@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "bench/charts/chart.h"
 #include "bench/trials/cost.h"
 #include "bench/trials/real_scenes.h"
@@ -26,6 +27,8 @@ constexpr int turns_without_index = 20;
 voxelizer::Surface surface_of(const std::string& name, int resolution) {
     const scenes::Scene scene = scenes::load(name);
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
+    if (snapshot.triangle_count == 0)
+        throw Error(Fault::usage, name, "it has no triangles", "choose a scene with some");
     return voxelizer::build_surface(scene, snapshot, voxelizer::grid_around(snapshot.bounds, resolution));
 }
 

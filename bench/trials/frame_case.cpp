@@ -155,3 +155,5 @@ renderer::View FrameCase::view(int width, int height) const {
     view.camera = optics::framing_camera(bounds_, double(width) / height);
     return view;
 }
+
+}  // namespace cairn::bench

@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
                       SceneAt{MASKS "5.gltf", {64}}, SceneAt{MASKS "6.gltf", {64}}),
     name_of);
 
-// ---- Every file, as far as it is quick; bench/check_scenes looks at all of them, finely
+// ---- Every file, as far as it is quick; `cairn bench check` looks at all of them, finely
 // -----------------------------
 
 constexpr std::uint64_t most_triangles = 250000;

@@ -17,8 +17,8 @@ struct TileOptions {
     /// A grid whose bits take up to so much is marked at once (512^3 voxels).
     std::size_t whole_bytes = std::size_t(16) << 20U;
     /// A larger one in regions of so much, but at least one tile: parts of slabs that are one tile wide along
-    /// x. Measured by bench/region_bench: smaller ones look at large triangles more often, larger ones gain
-    /// nothing.
+    /// x. Measured by `cairn bench region-sizes`: smaller ones look at large triangles more often, larger
+    /// ones gain nothing.
     std::size_t region_bytes = std::size_t(16) << 20U;
     /// Marks the first region twice, and leaves the first time out of the figures: drivers compile programs
     /// at their first use.
