@@ -324,5 +324,38 @@ TEST(BenchUsage, NamesTheChartsThatThereAre) {
         EXPECT_EQ(cairn({"bench", "voxelize", "--resolutions", sizes}).code, 2) << sizes;
 }
 
+TEST(BenchCommand, OptionsOfVoxelsChangeWhatAChartMeasures) {
+    const ScratchFolder folder;
+    const auto produced = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> words = {
+            "bench",  "production", "--scene", "builtin:cornell",     "--resolutions", "32",
+            "--runs", "1",          "-o",      folder.path().string()};
+        words.insert(words.end(), options.begin(), options.end());
+        return cairn_json(words);
+    };
+    const auto usual = produced({});
+    EXPECT_FALSE(usual.contains("voxel_options"));
+    const auto small = produced({"--brick-m", "8", "--traversal", "restart"});
+    EXPECT_EQ(small["voxel_options"]["brick-m"], "8");
+    EXPECT_EQ(small["voxel_options"]["traversal"], "restart");
+    EXPECT_GT(small["measurements"][0]["bricks_produced"], usual["measurements"][0]["bricks_produced"]);
+}
+
+TEST(BenchCommand, OptionsOfVoxelsThatAChartVariesItselfAreRefused) {
+    const std::vector<std::vector<std::string>> refused = {{"structure", "--tree-n", "2"},
+                                                           {"structure", "--traversal", "restart"},
+                                                           {"render", "--brick-m", "8"},
+                                                           {"resolution", "--tree-n", "2"},
+                                                           {"voxelize", "--traversal", "restart"},
+                                                           {"embree", "--frame-budget", "5"},
+                                                           {"moving-shadow", "--tile-queries", "blocks"}};
+    for (const std::vector<std::string>& words : refused) {
+        const Answer answer = cairn({"bench", words[0], words[1], words[2]});
+        EXPECT_EQ(answer.code, 2) << answer;
+        EXPECT_NE(answer.err.find(words[1]), std::string::npos) << answer;
+        EXPECT_NE(answer.err.find(words[0]), std::string::npos) << answer;
+    }
+}
+
 }  // namespace
 }  // namespace cairn::test

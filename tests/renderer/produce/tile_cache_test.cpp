@@ -143,7 +143,7 @@ TEST_F(TileCacheTest, BricksComeFirstAndThenTheDeepestNodes) {
     // Blocks for the root, its children, those of two of them, and of one of theirs: then there is no room.
     for (const bool asks_for_brick : {true, false}) {
         SCOPED_TRACE(asks_for_brick);
-        TileCache& cache = make({.node_pool_bytes = bytes_of_blocks(5), .brick_bytes = bytes_of_slots(8)});
+        TileCache& cache = make({.node_bytes = bytes_of_blocks(5), .brick_bytes = bytes_of_slots(8)});
         const std::vector<std::uint32_t> level1 = children_of(0);
         const std::vector<std::uint32_t> one = children_of(level1[0]);
         const std::vector<std::uint32_t> inner = children_of(one[0]);
