@@ -146,7 +146,8 @@ Options parsed(const OptionTable<Options>& table, std::vector<std::string> words
 
 /// What a POSIX shell makes of a line.
 std::vector<std::string> shell_words(const std::string& line) {
-    std::FILE* const shell = popen(("printf '%s\\0' " + line).c_str(), "r");
+    std::FILE* const shell =
+        popen(("for word in " + line + "; do printf '%s\\0' \"$word\"; done").c_str(), "r");
     std::string text;
     for (int c = std::fgetc(shell); c != EOF; c = std::fgetc(shell))
         text += char(c);
