@@ -16,6 +16,8 @@
 
 namespace cairn::renderer {
 
+class FrameLoop;
+
 /// Called after each pass with the share of pixels that are done, in [0, 1].
 using Progress = std::function<void(double)>;
 
@@ -95,13 +97,7 @@ public:
     void forget_picture();
 
 private:
-    struct Parts;
-    /// Marches rows of a picture band by band; `march_band(row)` brings one to its end.
-    /// @param shown  SHOW_* of shaders/interop/config.h.
-    optics::Image march(const View& view, Rows rows, int shown, const std::function<void(int)>& march_band);
-    /// Until nothing is missing.
-    optics::Image march_patiently(const View& view, Rows rows, int shown, const Progress& progress);
-    std::unique_ptr<Parts> parts_;
+    std::unique_ptr<FrameLoop> loop_;
 };
 
 }  // namespace cairn::renderer

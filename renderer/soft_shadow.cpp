@@ -29,13 +29,8 @@ glm::dmat4 clip_from_world(const View& view, const scenes::Bounds& bounds) {
     // So far behind all that is there that it is not clipped by rounding, were the near plane the least.
     furthest *= 2.0;
     nearest = std::clamp(0.999 * nearest, 1e-5 * furthest, 0.999 * furthest);
-    return glm::perspective(view.camera.yfov, double(view.width) / view.height, nearest, furthest) * camera;
-}
-
-void check(const View& view) {
-    if (view.width >= 1 && view.height >= 1 && view.width <= 16384 && view.height <= 16384) return;
-    throw Error(Fault::usage, "soft shadow", fmt::format("a picture of {}x{}", view.width, view.height),
-                "choose 1 to 16384 pixels a side");
+    return glm::perspective(view.camera.yfov, double(view.size.width) / view.size.height, nearest, furthest) *
+           camera;
 }
 
 }  // namespace
@@ -81,20 +76,20 @@ SoftShadowRenderer& SoftShadowRenderer::operator=(SoftShadowRenderer&&) noexcept
 SoftShadowRenderer::~SoftShadowRenderer() = default;
 
 SoftShadowPicture SoftShadowRenderer::render(const View& view, const std::optional<ShadowFrustum>& frustum) {
-    check(view);
+    check_view(view);
     Parts& parts = *parts_;
     parts.map.compute(view.light,
                       frustum ? *frustum : fit_shadow_frustum(view.light, parts.occluders, parts.receivers),
                       parts.occluder_mesh, parts.receiver_mesh);
-    ProjectedPixels pixels = parts.projection.draw({.width = view.width,
-                                                    .height = view.height,
+    ProjectedPixels pixels = parts.projection.draw({.width = view.size.width,
+                                                    .height = view.size.height,
                                                     .eye = view.camera.eye,
                                                     .clip_from_world = clip_from_world(view, parts.bounds),
                                                     .background = view.background,
                                                     .light_color = view.light.color,
                                                     .ambient = view.light.ambient},
                                                    parts.map, parts.occluder_mesh, parts.receiver_mesh);
-    return {{view.width, view.height, std::move(pixels.rgba)},
+    return {{view.size.width, view.size.height, std::move(pixels.rgba)},
             std::move(pixels.visible),
             std::move(pixels.distance)};
 }

@@ -10,9 +10,9 @@
 #include <glm/gtc/constants.hpp>
 
 #include "app/options/parse.h"
+#include "app/options/voxel_rows.h"
 #include "base/error.h"
 #include "renderer/pool/tree_options.h"
-#include "renderer/produce/transfer_function.h"
 #include "shaders/interop/config.h"
 
 namespace cairn::app {
@@ -26,8 +26,6 @@ constexpr int most_zoom = 46;
 /// Outside, every ray asks for the finest or the coarsest level there is.
 constexpr double least_pixel_error = 1e-3;
 constexpr double largest_pixel_error = 1e3;
-constexpr int least_brick = 8;
-constexpr double most_budget_ms = 86.4e6;  // a day
 
 optics::Camera camera_of(const char* option, const std::string& text) {
     const std::vector<double> n = parse_numbers(option, text, 6, 7);
@@ -93,26 +91,6 @@ Names<renderer::Show> show_names() {
 Names<renderer::LevelOfDetail::Kind> level_of_detail_names() {
     using Kind = renderer::LevelOfDetail::Kind;
     return {{"nearest", Kind::nearest}, {"blended", Kind::blended}};
-}
-
-/// A number within [low, high], if it was given.
-template <typename Member>
-OptionRow<ViewOptions> number_row(const char* name, const char* value_name, std::string description,
-                                  double low, double high, Member member) {
-    return {name, value_name, std::move(description),
-            [=](ViewOptions& options, const char* option, const std::string& text) {
-                const double value = parse_number(option, text);
-                if (value < low || value > high) {
-                    throw Error(Fault::usage, option,
-                                fmt::format("{} is not between {} and {}", value, low, high));
-                }
-                member(options) = value;
-            },
-            [=](const ViewOptions& options) -> std::optional<std::string> {
-                const std::optional<double> value = member(options);
-                if (!value) return std::nullopt;
-                return fmt::format("{}", *value);
-            }};
 }
 
 /// Memory of a cache: MiB on the command line, bytes in the options.
@@ -214,7 +192,7 @@ OptionTable<ViewOptions> tree_table() {
             "--brick-cache",
             "main memory for bricks that had to leave the brick pool,\nin MiB (default: 0, none)", 0,
             [](auto& options) -> auto& { return options.pools.cache_bytes; }),
-        number_row(
+        number_row<ViewOptions>(
             "--pixel-error", "E",
             "the size of a voxel on the screen, in pixels, that rays\nlook for (default: {default})",
             least_pixel_error, largest_pixel_error,
@@ -224,31 +202,16 @@ OptionTable<ViewOptions> tree_table() {
 
 OptionTable<ViewOptions> march_table() {
     return {
-        whole_row<ViewOptions>(
-            "--tree-n", "N", "children of a node of the tree per axis: 2, 3, 4 or 8\n(default: 4)", 2, 8,
-            [](auto& options) -> auto& { return options.tree_n; }),
-        whole_row<ViewOptions>(
-            "--brick-m", "M",
-            "voxels of a brick per axis: 8, 16, 32 or 64; 27 or 81 with\n--tree-n 3 (default: 16, or 27)",
-            least_brick, 81, [](auto& options) -> auto& { return options.brick_m; }),
-        named_row<ViewOptions>(
-            "--traversal", "how a ray finds its next tile; the picture is the same\n(default: {default})",
-            traversal_names(), [](auto& options) -> auto& { return options.march.traversal; }),
+        tree_n_row<ViewOptions>([](auto& options) -> auto& { return options.tree_n; }),
+        brick_m_row<ViewOptions>([](auto& options) -> auto& { return options.brick_m; }),
+        traversal_row<ViewOptions>([](auto& options) -> auto& { return options.march.traversal; }),
     };
 }
 
 OptionTable<ViewOptions> frame_table() {
     return {
-        named_row<ViewOptions>(
-            "--tile-queries",
-            "how rays ask for what is missing: a list of all tiles, or\nfour tiles per block of pixels, in "
-            "more passes; the\npicture is the same (default: {default})",
-            tile_query_names(), [](auto& options) -> auto& { return options.march.tile_queries; }),
-        number_row(
-            "--frame-budget", "MS",
-            "milliseconds after which a frame produces nothing more and\nshows what there is (default: "
-            "until nothing is missing)",
-            0.0, most_budget_ms, [](auto& options) -> auto& { return options.frame_budget_ms; }),
+        tile_queries_row<ViewOptions>([](auto& options) -> auto& { return options.march.tile_queries; }),
+        budget_row<ViewOptions>([](auto& options) -> auto& { return options.frame_budget_ms; }),
     };
 }
 
@@ -274,17 +237,8 @@ OptionTable<ViewOptions> look_table() {
         whole_row<ViewOptions>(
             "--copies", "K", "a volume K times along each axis, side by side (default: {default})", 1,
             max_copies, [](auto& options) -> auto& { return options.copies; }),
-        whole_row<ViewOptions>(
-            "--steps-per-voxel", "N",
-            fmt::format("steps of a ray through a voxel of a volume, 1 to {}\n(default: {})",
-                        VOLUME_MOST_STEPS, renderer::VolumeOptions{}.steps_per_voxel),
-            1, VOLUME_MOST_STEPS, [](auto& options) -> auto& { return options.steps_per_voxel; }),
-        number_row(
-            "--gradient-threshold", "G",
-            fmt::format("change of density per voxel from which on a place of a\nvolume is lit as a surface; "
-                        "0: lit as fog everywhere\n(default: {})",
-                        renderer::VolumeOptions{}.full_gradient),
-            0.0, 1.0, [](auto& options) -> auto& { return options.gradient_threshold; }),
+        steps_row<ViewOptions>([](auto& options) -> auto& { return options.steps_per_voxel; }),
+        gradient_row<ViewOptions>([](auto& options) -> auto& { return options.gradient_threshold; }),
         named_row<ViewOptions>(
             "--show",
             "the scene, or what its voxels are: their level in the\ntree, or the lines "
@@ -307,18 +261,6 @@ OptionTable<ViewOptions> view_table() {
     for (const auto& part : {camera_table(), shadow_table(), tree_table(), march_table(), look_table()})
         table.insert(table.end(), part.begin(), part.end());
     return table;
-}
-
-Names<renderer::Traversal> traversal_names() {
-    using renderer::Traversal;
-    return {{"restart", Traversal::restart},
-            {"stackless", Traversal::stackless},
-            {"mini-stack", Traversal::mini_stack}};
-}
-
-Names<renderer::TileQueries> tile_query_names() {
-    using renderer::TileQueries;
-    return {{"list", TileQueries::list}, {"blocks", TileQueries::blocks}};
 }
 
 renderer::ShadowQuality shadow_of(const ViewOptions& options) {

@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/options/names.h"
 #include "app/options/option_table.h"
 #include "app/options/options.h"
 #include "app/options/transfer_option.h"
@@ -57,9 +56,6 @@ struct ViewOptions {
 
 /// The options that `cairn render` and `cairn view` share: the tables above but the two for `cairn render`.
 [[nodiscard]] OptionTable<ViewOptions> view_table();
-
-[[nodiscard]] Names<renderer::Traversal> traversal_names();
-[[nodiscard]] Names<renderer::TileQueries> tile_query_names();
 
 /// The shadow of the options, cones or not.
 [[nodiscard]] renderer::ShadowQuality shadow_of(const ViewOptions& options);

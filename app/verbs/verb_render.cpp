@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/options/view_options.h"
+#include "app/options/voxel_rows.h"
 #include "app/subject/scene_input.h"
 #include "app/subject/subject.h"
 #include "app/terminal/driver.h"

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "bench/charts/chart.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "reference/shadow_truth.h"
@@ -48,8 +48,7 @@ public:
         scenes::add_ground(scene_, voxelized_);
         times_ = thinned(scenes::frame_times(scene_, when_, frames_per_second),
                          std::size_t(frames_a_run) * std::size_t(runs));
-        view_.width = width;
-        view_.height = height;
+        view_.size = {width, height};
         // The ground receives shadows outside the grid too, and throws none.
         view_.camera = optics::framing_camera(voxelized_, double(width) / height);
         const double size = 2.0 * glm::length(voxelized_.high - voxelized_.low);
@@ -70,7 +69,7 @@ public:
     }
     [[nodiscard]] renderer::View view(int rays) const {
         renderer::View view = view_;
-        view.shadow_rays = rays;
+        view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
         return view;
     }
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
@@ -191,7 +190,7 @@ Chart chart_moving_shadow(const ChartOptions& options) {
             if (options.progress) options.progress(done);
         }
     }
-    write_file(chart, options.folder, "moving_shadow.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "moving_shadow");
     return chart;
 }
 

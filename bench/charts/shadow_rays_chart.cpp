@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "bench/charts/chart.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/shadow_runs.h"
 #include "bench/trials/shadow_scene.h"
 #include "reference/shadow_truth.h"
@@ -57,11 +57,11 @@ Cell paper_ms(std::span<const PaperRow> table, const std::string& scene, int num
 using Frames = ShadowFrames;
 struct Traversal {
     const char* name;
-    Frames (*make)(const ShadowScene& scene, int resolution, const gl::ShaderSource& shaders);
+    Frames (*make)(const ShadowScene& scene, int resolution, const ChartOptions& options);
 };
 
-Frames n3_tree(const ShadowScene& scene, int resolution, const gl::ShaderSource& shaders) {
-    auto ours = shadowing_renderer(scene, tree_of(resolution), shaders);
+Frames n3_tree(const ShadowScene& scene, int resolution, const ChartOptions& options) {
+    auto ours = shadowing_renderer(scene, tree_of(resolution), options.voxels.renderer(), options.shaders);
     return [ours, is_first = std::make_shared<bool>(true)](const renderer::View& view) {
         ShadowRun run = shadow_frame(*ours, view);
         run.from_nothing = std::exchange(*is_first, false);
@@ -70,8 +70,8 @@ Frames n3_tree(const ShadowScene& scene, int resolution, const gl::ShaderSource&
 }
 
 template <renderer::ColumnMask mask>
-Frames pyramid(const ShadowScene& scene, int resolution, const gl::ShaderSource& shaders) {
-    return pyramid_frames(scene, {resolution, mask}, shaders);
+Frames pyramid(const ShadowScene& scene, int resolution, const ChartOptions& options) {
+    return pyramid_frames(scene, {resolution, mask}, options.shaders);
 }
 
 constexpr std::array traversals = {Traversal{"n3-tree", n3_tree},
@@ -107,8 +107,7 @@ public:
         for (const Traversal& traversal : traversals) {
             add_table_2(scene, traversal, all);
             for (const int resolution : resolutions_of(table_3))
-                add(scene, {&traversal, 3, 1, resolution},
-                    traversal.make(scene, resolution, options_.shaders), all);
+                add(scene, {&traversal, 3, 1, resolution}, traversal.make(scene, resolution, options_), all);
         }
         done(0.4);
         for (Measured& one : all)
@@ -130,8 +129,8 @@ private:
     void add(const ShadowScene& scene, const Setting& setting, const Frames& frames,
              std::vector<Measured>& all) const {
         renderer::View view = scene.view(width_, height_, std::max(setting.rays, 1));
-        view.pixel_error = always_finest;
-        if (setting.rays == 0) view.shadow = renderer::Shadow::none;
+        view.detail.pixel_error = always_finest;
+        if (setting.rays == 0) view.shadow.kind = renderer::ShadowQuality::Kind::none;
         RepeatedRuns runs([frames, view] { return frames(view); });
         runs.sweep((options_.runs + 1) / 2, 0.5 * options_.budget_ms);
         all.push_back({setting, std::move(runs)});
@@ -140,7 +139,7 @@ private:
     void add_table_2(const ShadowScene& scene, const Traversal& traversal, std::vector<Measured>& all) {
         const int resolution =
             options_.resolutions.empty() ? table_2_resolution : options_.resolutions.back();
-        const Frames frames = traversal.make(scene, resolution, options_.shaders);
+        const Frames frames = traversal.make(scene, resolution, options_);
         add(scene, {&traversal, 2, 0, resolution}, frames, all);
         for (const PaperRow& row : table_2) {
             add(scene, {&traversal, 2, row.number, resolution}, frames, all);
@@ -233,7 +232,7 @@ Chart chart_shadow_rays(const ChartOptions& options) {
         });
         if (options.progress) options.progress(double(i + 1) / double(scenes.size()));
     }
-    write_file(chart, options.folder, "shadow_rays.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "shadow_rays");
     return chart;
 }
 

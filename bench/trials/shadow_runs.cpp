@@ -4,13 +4,16 @@
 
 #include "bench/trials/samples.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/open_content.h"
 
 namespace cairn::bench {
 
 std::shared_ptr<renderer::Renderer> shadowing_renderer(const ShadowScene& scene,
                                                        const renderer::TreeOptions& tree,
+                                                       const renderer::RendererOptions& options,
                                                        const gl::ShaderSource& shaders) {
-    auto made = std::make_shared<renderer::Renderer>(scene.scene(), scene.all(), tree, shaders);
+    auto made = std::make_shared<renderer::Renderer>(
+        renderer::surface_content(scene.scene(), scene.all(), tree, shaders), options, shaders);
     made->set_mix({.meshes = std::make_shared<renderer::MeshRaster>(scene.scene(), scene.all(), shaders),
                    .mesh_shadows = true,
                    .meshes_are_voxelized = true,
@@ -20,9 +23,8 @@ std::shared_ptr<renderer::Renderer> shadowing_renderer(const ShadowScene& scene,
 
 ShadowRun shadow_frame(renderer::Renderer& renderer, const renderer::View& view) {
     renderer.forget_picture();
-    optics::LightShares found = renderer.light_shares(view);
-    const renderer::FrameStatistics& frame = renderer.statistics();
-    return {frame.milliseconds, std::move(found.shares), frame.bricks_produced + frame.nodes_subdivided > 0};
+    auto [light, frame] = renderer.light(view);
+    return {frame.milliseconds, std::move(light.shares), frame.bricks_produced + frame.nodes_subdivided > 0};
 }
 
 ShadowFrames pyramid_frames(const ShadowScene& scene, const renderer::PyramidShadowOptions& options,

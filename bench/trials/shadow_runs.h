@@ -23,6 +23,7 @@ struct ShadowRun {
 /// the light (Forest et al. 2009, section 3.1), as `cairn shadow` has it.
 [[nodiscard]] std::shared_ptr<renderer::Renderer> shadowing_renderer(const ShadowScene& scene,
                                                                      const renderer::TreeOptions& tree,
+                                                                     const renderer::RendererOptions& options,
                                                                      const gl::ShaderSource& shaders);
 /// Marches a frame, whatever was shown before.
 [[nodiscard]] ShadowRun shadow_frame(renderer::Renderer& renderer, const renderer::View& view);

@@ -81,11 +81,10 @@ ShadowScene::ShadowScene(const std::string& path, bool with_ground)
 
 renderer::View ShadowScene::view(int width, int height, int rays) const {
     renderer::View view;
-    view.width = width;
-    view.height = height;
+    view.size = {width, height};
     view.camera = camera_above(framed_, double(width) / height);
     view.light = light_;
-    view.shadow_rays = rays;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
     return view;
 }
 

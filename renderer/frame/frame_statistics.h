@@ -28,7 +28,7 @@ struct FrameStatistics {
     /// Of `produce_ms`: sending to the GPU what is made or kept in main memory: nodes, volumes' bricks, and
     /// bricks that come back from there. What the GPU makes itself is not sent.
     double upload_ms = 0.0;
-    bool converged = true;              ///< nothing was missing: the picture is that of a frame without a budget
+    bool converged = true;  ///< nothing was missing: the picture is that of a frame without a budget
     std::uint64_t bricks_resident = 0;  ///< after the frame
     /// Of the resident bricks, those that rays read, or that were produced, since the frame began; with a
     /// budget, since the first frame of this view began.

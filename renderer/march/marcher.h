@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -11,10 +10,12 @@
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "renderer/march/march_options.h"
-#include "renderer/march/tile_blocks.h"
+#include "renderer/march/query_buffer.h"
 #include "renderer/pool/brick_pool.h"
+#include "renderer/pool/round.h"
 #include "renderer/pool/tree.h"
 #include "renderer/produce/content_program.h"
+#include "renderer/produce/tile_query.h"
 #include "shaders/interop/config.h"
 #include "shaders/interop/types.h"
 
@@ -33,12 +34,8 @@ struct PassResult {
     std::uint32_t waiting_shadow = 0;   ///< the same, and shadow rays not yet started
     std::uint32_t stood_in = 0;         ///< missing tiles that rays did not wait for
     std::uint32_t launched = 0;  ///< rays that began; all of the band's in its first pass, but for a proxy
-    /// 2 * node entry + QUERY_*, or 2 * Tree::entry_count() + entry for a brick that could stand in; each
-    /// once.
-    std::vector<std::uint32_t> queries;
-    std::vector<std::uint32_t>
-        query_counts;  ///< rays that ask, by query % QUERY_COUNTS; not of patient passes
-    std::vector<std::uint32_t> brick_stamps;  ///< one a slot: the last round whose rays used it
+    std::vector<TileQuery> queries;           ///< each once; patient passes do not count the rays that ask
+    std::vector<std::uint32_t> brick_stamps;  ///< of each slot, the last round whose rays used it
     std::size_t bytes_read = 0;               ///< from the GPU, to know all this
     [[nodiscard]] bool done() const { return waiting_primary == 0 && waiting_shadow == 0; }
 };
@@ -79,10 +76,10 @@ public:
     void set_windows(const std::vector<interop::MarchWindow>& windows);
 
     /// Runs every waiting ray until it ends, misses a tile, or has crossed so many cells that it pauses.
-    /// `round` is a number that grows with each pass.
+    /// @param round  grows with each pass.
     /// @throws Error (Fault::internal) when rays wait though nothing is missing and none has paused, or pause
     /// without end.
-    [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool,
+    [[nodiscard]] PassResult run_pass(Round round, const Tree& tree, const BrickPool& pool,
                                       PassKind kind = PassKind::patient);
 
     [[nodiscard]] bool marches_surfaces() const { return content_.of_surfaces; }
@@ -101,12 +98,7 @@ private:
         bool is_shadow = false;
         std::uint32_t rays = 0;
     };
-    void run(const Dispatch& dispatch, std::uint32_t round, const BrickPool& pool, PassKind kind) const;
-    [[nodiscard]] interop::MarchCounters read_counters() const;
-    void forget_queries(PassKind kind, std::size_t entries);
-    void read_list(PassResult& result, std::uint32_t asked, PassKind kind, int slots);
-    void read_blocks(PassResult& result, std::uint32_t round);
-    [[nodiscard]] std::vector<std::uint32_t> read_urgent(PassResult& result);
+    void run(const Dispatch& dispatch, Round round, const BrickPool& pool, PassKind kind) const;
 
     MarchOptions options_;
     gl::ShaderSource shaders_;
@@ -124,11 +116,8 @@ private:
     gl::TextureHandle shadow_ends_texture_;
     gl::Buffer rays_;
     gl::Buffer lists_;
-    gl::Buffer queries_;
-    gl::Buffer usage_;        ///< none with tile_blocks_
+    QueryBuffer queries_;
     gl::Buffer shadow_sums_;  ///< empty until a frame has soft shadows
-    std::optional<TileBlocks> tile_blocks_;
-    std::vector<std::uint32_t> block_stamps_;  ///< of slots, with tile_blocks_
     gl::Buffer image_;
     gl::Buffer starts_;
     std::size_t start_count_ = 0;
@@ -136,13 +125,9 @@ private:
     MarchMix mix_;
     glm::ivec2 size_{0};
     std::size_t capacity_ = 0;  // pixels that the buffers hold
-    std::uint32_t query_bits_offset_ = 0;
-    std::uint32_t entry_count_ = 0;
-    std::uint32_t query_capacity_ = 0;
     std::uint32_t waiting_primary_ = 0;
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;
-    bool urgent_told_ = true;  // the last pass left queries by rank
     bool show_tree_ = false;
     int shadow_rays_ = 1;  // of a pixel
     bool soft_shadows_ = false;

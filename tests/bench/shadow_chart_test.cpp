@@ -232,7 +232,7 @@ TEST_F(ShadowChart, ManyRaysAreNoLessAccurateThanFew) {
     reference::AreaLightOptions sampling;
     sampling.exact_strata = 32;
     const std::vector<float> truth = soft_shares(tracer, question, receivers, sampling).shares;
-    const auto ours = shadowing_renderer(scene, tree_of(512), {});
+    const auto ours = shadowing_renderer(scene, tree_of(512), {}, {});
     view.detail.pixel_error = always_finest;
     const auto rmse = [&](int rays) {
         view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
@@ -249,7 +249,7 @@ TEST_F(ShadowChart, MeshesOfSeveralBatchesAreWhole) {
     ASSERT_GT(scene.all().triangle_count, std::uint64_t(MESH_BATCH_TRIANGLES));
     const scenes::NodeSelection everything(scene.scene().nodes.size(), true);
     const reference::ImageTracer tracer(scene.scene(), scene.all());
-    const auto ours = shadowing_renderer(scene, tree_of(256), {});
+    const auto ours = shadowing_renderer(scene, tree_of(256), {}, {});
     std::map<int, std::vector<float>> before;
     for (const int width : {64, 68, 72, 76, 80, 64, 68, 72, 76, 80}) {
         const int height = width * 3 / 4;

@@ -12,6 +12,7 @@
 #include "renderer/march/tile_blocks.h"
 #include "renderer/produce/fractal_content.h"
 #include "renderer/produce/surface_content.h"
+#include "renderer/produce/tile_cache.h"
 #include "renderer/renderer.h"
 #include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
@@ -28,8 +29,10 @@ namespace {
 
 using optics::Image;
 using renderer::Milliseconds;
+using renderer::QueryKind;
 using renderer::Renderer;
 using renderer::TileQueries;
+using renderer::TileQuery;
 using renderer::View;
 
 // --- the reduction ---
@@ -100,9 +103,8 @@ TEST_F(TileBlocksTest, EachBlockKeepsTheFirstFourDifferentTiles) {
 struct Scenery {
     Scenery()
         : shape_(renderer::make_tree_shape(2, 8, 512)),
-          content_(shape_, surface(), {}),
-          pool_(shape_, content_.channels(), 64U << 20U),
-          tree_(shape_, pool_.slot_count(), 8U << 20U, content_.oracle().child_mask({})) {
+          cache_(shape_, std::make_unique<renderer::SurfaceContent>(shape_, surface(), gl::ShaderSource{}),
+                 {.node_pool_bytes = 8U << 20U, .brick_pool_bytes = 64U << 20U}) {
         const auto side = float(shape_.resolution());
         view_.eye = {0.4F * side, 0.6F * side, 1.6F * side, 0.004F};
         view_.forward = {0.0F, 0.0F, -1.0F, 0.0F};
@@ -120,49 +122,33 @@ struct Scenery {
                                         {.attributes = true});
     }
     [[nodiscard]] renderer::Marcher marcher(const renderer::MarchOptions& options) const {
-        return {shape_, content_.has_color(), options, {}};
+        return {shape_, cache_.content().has_color(), options, {}};
     }
     renderer::PassResult first_pass(renderer::Marcher& marcher) const {
-        marcher.begin_frame(view_, tree_, pool_, false);
-        return marcher.run_pass(round_, tree_, pool_);
+        marcher.begin_frame(view_, cache_.tree(), cache_.pool(), false);
+        return marcher.run_pass(round_, cache_.tree(), cache_.pool());
     }
-    /// Whether it is for a brick, and the level. Those that serve() answers first are the largest.
-    [[nodiscard]] std::tuple<bool, int> urgency(std::uint32_t query) const {
-        return {query % 2 == QUERY_BRICK, tree_.tile(query / 2).level};
+    /// Whether it is for a brick, and the level. Those that TileCache::answer() answers first are the
+    /// largest.
+    [[nodiscard]] std::tuple<bool, int> urgency(const TileQuery& query) const {
+        return {query.kind == QueryKind::brick, cache_.tree().tile(query.entry).level};
     }
-    [[nodiscard]] std::tuple<bool, int> most_urgent(const std::vector<std::uint32_t>& queries) const {
+    [[nodiscard]] std::tuple<bool, int> most_urgent(const std::vector<TileQuery>& queries) const {
         std::tuple<bool, int> most{false, -1};
-        for (const std::uint32_t query : queries)
+        for (const TileQuery& query : queries)
             most = std::max(most, urgency(query));
         // Any brick brings a ray to its data.
         return std::get<0>(most) ? std::tuple<bool, int>{true, 0} : most;
     }
-    void answer(std::uint32_t query) {
-        const std::uint32_t entry = query / 2;
-        if (query % 2 == QUERY_BRICK) {
-            const std::optional<int> slot = tree_.add_brick(entry);
-            ASSERT_TRUE(slot);
-            const renderer::BrickRequest request{tree_.tile(entry), *slot};
-            (void)content_.producer().produce({&request, 1}, pool_);
-        } else {
-            const std::optional<std::uint32_t> first = tree_.add_children(entry);
-            ASSERT_TRUE(first);
-            const glm::uvec2 mask = content_.oracle().child_mask(tree_.tile(entry));
-            for (int child = 0; child < shape_.child_count(); ++child) {
-                if (!renderer::may_hold(mask, shape_.n, child)) continue;
-                const renderer::Tile tile = renderer::child_of(tree_.tile(entry), shape_.n, child);
-                tree_.set_child_mask(*first + std::uint32_t(child), content_.oracle().child_mask(tile));
-            }
-        }
-        tree_.upload();
+    void answer(const TileQuery& query) {
+        ASSERT_EQ(cache_.answer({&query, 1}).count(), 1U);
+        cache_.upload();
     }
 
     renderer::TreeShape shape_;
-    renderer::SurfaceContent content_;
-    renderer::BrickPool pool_;
-    renderer::Tree tree_;
+    renderer::TileCache cache_;
     interop::MarchView view_{};
-    std::uint32_t round_ = 1;
+    renderer::Round round_{1};
 };
 
 class UrgentQueries : public GlTest {};
@@ -176,22 +162,23 @@ TEST_F(UrgentQueries, MostUrgentIsKnownThoughThereIsRoomForOneAlone) {
     int mixed = 0;
     for (int step = 0; step < 150; ++step) {
         SCOPED_TRACE(fmt::format("seed 12, step {}", step));
-        ++scenery.round_;
+        scenery.round_ = scenery.round_.next();
         const renderer::PassResult asked = scenery.first_pass(all);
         if (asked.done()) break;
         const auto most = scenery.most_urgent(asked.queries);
         const auto least = scenery.urgency(*std::min_element(
             asked.queries.begin(), asked.queries.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return scenery.urgency(a) < scenery.urgency(b); }));
+            [&](const TileQuery& a, const TileQuery& b) { return scenery.urgency(a) < scenery.urgency(b); }));
         mixed += !std::get<0>(least) && least != most ? 1 : 0;
         for (renderer::Marcher* lossy : {&few, &blocks}) {
             const renderer::PassResult told = scenery.first_pass(*lossy);
             EXPECT_EQ(scenery.most_urgent(told.queries), most);
-            for (const std::uint32_t query : told.queries)
-                EXPECT_EQ(std::count(asked.queries.begin(), asked.queries.end(), query), 1) << query;
+            for (const TileQuery& query : told.queries)
+                EXPECT_EQ(std::count(asked.queries.begin(), asked.queries.end(), query), 1) << query.entry;
             EXPECT_EQ(told.waiting_primary, asked.waiting_primary);
         }
-        scenery.tree_.begin_round(++scenery.round_, asked.brick_stamps);
+        scenery.round_ = scenery.round_.next();
+        scenery.cache_.begin_round(scenery.round_, asked.brick_stamps);
         const auto count = std::int64_t(asked.queries.size());
         scenery.answer(asked.queries[std::size_t(random.between(0, count - 1))]);
     }

@@ -228,9 +228,9 @@ class TreeFlags : public GlTest {};
 TEST_F(TreeFlags, ConstantTileGivesItsSlotBackAndIsNeverAskedForAgain) {
     const TreeShape shape = renderer::make_tree_shape(2, 8, 64);
     renderer::Tree tree(shape, 2, 1U << 16U, glm::uvec2(0xFF, 0), true);
-    tree.begin_round(1, {0, 0});
+    tree.begin_round(renderer::Round{1}, {0, 0});
     const std::uint32_t first = tree.add_children(0).value();
-    tree.begin_round(2, {0, 0});
+    tree.begin_round(renderer::Round{2}, {0, 0});
     ASSERT_TRUE(tree.add_brick(first));
     ASSERT_TRUE(tree.add_brick(first + 1));
     EXPECT_FALSE(tree.add_brick(first + 2)) << "a third slot of two";
@@ -238,7 +238,7 @@ TEST_F(TreeFlags, ConstantTileGivesItsSlotBackAndIsNeverAskedForAgain) {
     EXPECT_FALSE(tree.slot(first));
     EXPECT_EQ(tree.bricks_resident(), 1);
     EXPECT_TRUE(tree.add_brick(first + 2));
-    tree.begin_round(3, {0, 0});
+    tree.begin_round(renderer::Round{3}, {0, 0});
     EXPECT_FALSE(tree.wants_brick(first));
     EXPECT_TRUE(tree.wants_children(first)) << "one value at its own level says nothing of finer ones";
     EXPECT_EQ(tree.node(first).brick, NODE_CONSTANT);
@@ -249,14 +249,14 @@ TEST_F(TreeFlags, ConstantTileGivesItsSlotBackAndIsNeverAskedForAgain) {
 TEST_F(TreeFlags, WhatIsKnownOfATileOutlivesItsBrick) {
     const TreeShape shape = renderer::make_tree_shape(2, 8, 64);
     renderer::Tree tree(shape, 1, 1U << 16U, glm::uvec2(0xFF, 0));
-    tree.begin_round(1, {0});
+    tree.begin_round(renderer::Round{1}, {0});
     const std::uint32_t first = tree.add_children(0).value();
-    tree.begin_round(2, {0});
+    tree.begin_round(renderer::Round{2}, {0});
     ASSERT_TRUE(tree.add_brick(first));
     tree.set_produced(first);
     tree.set_final(first);
     EXPECT_FALSE(tree.wants_children(first));
-    tree.begin_round(3, {0});
+    tree.begin_round(renderer::Round{3}, {0});
     ASSERT_TRUE(tree.add_brick(first + 1)) << "the only slot changes hands";
     EXPECT_FALSE(tree.slot(first));
     EXPECT_TRUE(tree.was_produced(first));

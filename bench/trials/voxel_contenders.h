@@ -12,15 +12,15 @@
 
 namespace cairn::bench {
 
-/// The surface at one resolution, and where its results go.
-struct Trial {
+/// The surface at one resolution, and the region to voxelize.
+struct VoxelCase {
     const voxelizer::Surface& surface;
     const voxelizer::GpuSurface& on_gpu;
     voxelizer::Region region;
 };
 
 /// Something that turns triangles into voxels, or only draws them.
-struct Contender {
+struct VoxelContender {
     std::string name;
     std::string driver;
     /// Voxelizes once. @param voxels  receives the result if not null. @return milliseconds of the work
@@ -29,27 +29,27 @@ struct Contender {
     bool finds_voxels = true;
 };
 
-/// Makes one at a trial; kept apart so that compiled programs outlive a trial.
-class Contenders {
+/// Makes the contenders of a case; kept apart so that compiled programs outlive a case.
+class VoxelContenders {
 public:
-    explicit Contenders(const gl::ShaderSource& shaders);
-    ~Contenders();
-    Contenders(const Contenders&) = delete;
-    Contenders& operator=(const Contenders&) = delete;
+    explicit VoxelContenders(const gl::ShaderSource& shaders);
+    ~VoxelContenders();
+    VoxelContenders(const VoxelContenders&) = delete;
+    VoxelContenders& operator=(const VoxelContenders&) = delete;
 
-    /// All of them, at one trial, which must outlive what is returned: every method of the voxelizer, plain
+    /// All contenders at one case, which must outlive what is returned: every method of the voxelizer, plain
     /// rasterization, and the peers on the CPU.
-    [[nodiscard]] std::vector<Contender> at(const Trial& trial) const;
+    [[nodiscard]] std::vector<VoxelContender> at(const VoxelCase& voxel_case) const;
 
     /// All coarser levels of the pyramid, right after their finest level was voxelized: milliseconds.
-    [[nodiscard]] double pyramid_ms(const Trial& trial) const;
+    [[nodiscard]] double pyramid_ms(const VoxelCase& voxel_case) const;
 
     /// What cannot take part in this build, in words; one a line.
     [[nodiscard]] static std::vector<std::string> absent();
 
 private:
-    struct Parts;
-    std::unique_ptr<Parts> parts_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 constexpr const char* cpu_row_span_name = "cpu-row-span";
