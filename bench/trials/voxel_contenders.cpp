@@ -8,6 +8,7 @@
 #include "gl/context.h"
 #include "shaders/interop/types.h"
 #include "voxelizer/files/voxel_tiles.h"
+#include "voxelizer/methods/pyramid_builder.h"
 #include "voxelizer/methods/voxelize_tiles.h"
 #include "voxelizer/methods/voxelizer.h"
 #include "voxelizer/surface/triangle_index.h"
