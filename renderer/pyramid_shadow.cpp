@@ -12,7 +12,8 @@
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/shadow/column_pyramid.h"
 #include "renderer/shadow/column_shadows.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/mesh.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
 #include "voxelizer/surface/moving_surface.h"
 
@@ -63,14 +64,17 @@ std::vector<std::uint32_t> PyramidShadowRenderer::Parts::light(const View& view,
     statistics = {.move_ms = move_ms, .pyramid_bytes = pyramid.size_bytes()};
     build_pyramid();
     interop::MarchView marched = march_view(view, grid, shape, nullptr);
+    marched.shown = shown;
+    marched.background_pixel = 0;
     std::vector<std::uint32_t> pixels;
-    for (int row = 0; row < view.height; row += marched.band.y) {
+    for (int row = 0; row < view.height; row += marched.row_count) {
         const auto drawing = Clock::now();
         const MeshSurface mesh = raster->draw_surface(marched, {grid.origin, grid.voxel_size}, row);
         glFinish();
         statistics.raster_ms += milliseconds_since(drawing);
         const int end = std::min(mesh.first_row + mesh.rows, view.height);
-        marched.band = glm::ivec4(row, end - row, shown, 0);
+        marched.first_row = row;
+        marched.row_count = end - row;
         const auto band =
             shadows.light(marched, pyramid, {mesh.first_row, mesh.nearest, mesh.surface, MESH_OWN_HEIGHT});
         pixels.insert(pixels.end(), band.begin(), band.end());

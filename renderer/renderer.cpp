@@ -15,7 +15,8 @@
 #include "renderer/produce/surface_content.h"
 #include "renderer/produce/volume_content.h"
 #include "renderer/renderer_parts.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/pool.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
@@ -103,9 +104,12 @@ optics::Image Renderer::march(const View& view, Rows rows, int shown,
     const bool is_known = !image.rgba.empty();
     if (!is_known) image = {view.width, rows.count, {}};
     const int end = rows.first + rows.count;
-    for (int row = rows.first; row < end && !is_known; row += marched.band.y) {
+    marched.shown = shown;
+    marched.background_pixel = background;
+    for (int row = rows.first; row < end && !is_known; row += marched.row_count) {
         const int drawn_end = std::min(parts.draw_mix(marched, row), end);
-        marched.band = glm::ivec4(row, std::min(band_rows, drawn_end - row), shown, int(background));
+        marched.first_row = row;
+        marched.row_count = std::min(band_rows, drawn_end - row);
         parts.marcher.begin_frame(marched, parts.tree, parts.pool, is_blended, parts.drawn);
         march_band(row);
         std::vector<std::uint8_t> band = parts.marcher.read_image();
@@ -168,8 +172,7 @@ std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
     if (parts.is_empty()) return 0;
     const FrameStatistics of_frame = parts.statistics;
     const View thin = thinned(next);
-    interop::MarchView marched = parts.march_view_of(thin);
-    marched.band = glm::ivec4(0, thin.height, int(thin.show), int(background_pixel(thin.background)));
+    const interop::MarchView marched = parts.march_view_of(thin);
     parts.tree.keep_since(parts.frame_round);
     parts.marcher.begin_frame(marched, parts.tree, parts.pool, is_blended);
     while (Clock::now() < deadline) {

@@ -7,7 +7,7 @@
 #include "app/options/parse.h"
 #include "base/error.h"
 #include "renderer/shadow/shadow_frustum.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::app {
 namespace {

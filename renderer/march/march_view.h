@@ -3,7 +3,7 @@
 #include "renderer/march/windows.h"
 #include "renderer/pool/tree_shape.h"
 #include "renderer/view/view.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
 #include "voxelizer/grid.h"
 
 /// From a view in the world to what rays are told of it.

@@ -8,8 +8,9 @@
 #include "gl/limits.h"
 #include "renderer/march/block_starts.h"
 #include "renderer/march/shadow_ends.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/mesh.h"
+#include "shaders/interop/pool.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::renderer {
 namespace {
@@ -139,7 +140,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
                           bool is_blended, const MarchMix& mix) {
     mix_ = mix;
     blended_ = is_blended;
-    size_ = glm::ivec2(view.size_shadow.x, view.band.y);
+    size_ = glm::ivec2(view.width, view.row_count);
     const auto pixels = std::size_t(size_.x) * std::size_t(size_.y);
     if (pixels > capacity_) {
         rays_ = gl::Buffer(pixels * sizeof(interop::RayState), "ray states");
@@ -147,9 +148,9 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         image_ = gl::Buffer(pixels * sizeof(std::uint32_t), "picture");
         capacity_ = pixels;
     }
-    shadow_rays_ = view.area_light.x;
-    soft_shadows_ = view.area_light.z != 0;
-    shadow_cones_ = view.area_light.w != 0;
+    shadow_rays_ = view.shadow_rays;
+    soft_shadows_ = view.is_soft != 0;
+    shadow_cones_ = view.is_cones != 0;
     const std::size_t sum_bytes =
         capacity_ * (shadow_cones_ ? sizeof(interop::ShadowConeSum) : sizeof(interop::ShadowSum));
     if (soft_shadows_ && shadow_sums_.size_bytes() < sum_bytes)
@@ -166,12 +167,14 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     }
     interop::MarchView marched = view;
     // They are told for one direction.
-    if (options_.block_starts && view.size_shadow.z != 0 && view.light.w == 0.0F && !soft_shadows_) {
+    if (options_.block_starts && view.casts_shadows != 0 && view.light_is_positional == 0 && !soft_shadows_) {
         const ShadowEnds ends = shadow_ends(view, tree, is_blended);
         shadow_ends_.write(0, ends.ends.data(), ends.ends.size() * sizeof(float));
         marched.shadow_across = ends.across;
+        marched.shadow_across_offset = ends.across_offset;
         marched.shadow_down = ends.down;
-        marched.size_shadow.w = 1;
+        marched.shadow_down_offset = ends.down_offset;
+        marched.has_shadow_ends = 1;
     }
     view_.write(0, &marched, sizeof(marched));
     std::vector<interop::BlockStart> starts =
@@ -182,9 +185,9 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     if (starts_.size_bytes() < starts.size() * sizeof(starts[0]))
         starts_ = gl::Buffer(capacity_ * sizeof(starts[0]), "block starts");
     starts_.write(0, starts.data(), starts.size() * sizeof(starts[0]));
-    image_.fill(0, pixels * sizeof(std::uint32_t), std::uint32_t(view.band.w));
+    image_.fill(0, pixels * sizeof(std::uint32_t), view.background_pixel);
     first_pass_ = true;
-    show_tree_ = view.band.z == SHOW_LEVELS || view.band.z == SHOW_BRICKS;
+    show_tree_ = view.shown == SHOW_LEVELS || view.shown == SHOW_BRICKS;
     pauses_ = 0;
     waiting_primary_ = 0;
     waiting_shadow_ = 0;
@@ -226,7 +229,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     queries_.bind_storage(SSBO_QUERIES);
     if (!tile_blocks_) usage_.bind_storage(SSBO_USAGE);
     if (soft_shadows_) shadow_sums_.bind_storage(SSBO_SHADOW_SUMS);
-    image_.bind_storage(SSBO_IMAGE);
+    image_.bind_storage(SSBO_PICTURE);
     starts_.bind_storage(SSBO_BLOCK_STARTS);
     glBindTextureUnit(TEXTURE_SHADOW_ENDS, shadow_ends_texture_.id());
     tree.bind_for_reading();

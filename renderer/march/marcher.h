@@ -17,8 +17,9 @@
 #include "renderer/march/traversal.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
-#include "shaders/interop/config.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/tile_query.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 
@@ -90,7 +91,7 @@ public:
     /// for.
     [[nodiscard]] static int band_rows(int width, int height);
 
-    /// Sets the frame, or a band of it (`view.band`); buffers grow when the bands do.
+    /// Sets the frame, or a band of it (`view.first_row` and `row_count`); buffers grow when the bands do.
     /// @param is_blended  rays see two mips at once (LevelOfDetail::blended); the pool's bricks have mips.
     void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool, bool is_blended,
                      const MarchMix& mix = {});

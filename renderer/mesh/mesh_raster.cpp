@@ -10,8 +10,9 @@
 #include "gl/handle.h"
 #include "gl/program.h"
 #include "renderer/mesh/mesh_targets.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/mesh.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
@@ -21,7 +22,8 @@ constexpr unsigned group_size = 64;
 
 /// Some rows of a picture, as the rays of a camera see them: what a drawing depends on.
 struct Strip {
-    glm::vec4 eye, forward, right, up;
+    glm::vec3 eye, forward, right, up;
+    float skipped;
     glm::ivec2 picture;
     MarchSpace space;
     int first_row;
@@ -30,10 +32,10 @@ struct Strip {
 };
 
 Strip strip_of(const interop::MarchView& view, const MarchSpace& space, int row) {
-    const glm::ivec2 picture(view.size_shadow.x, view.size_shadow.y);
+    const glm::ivec2 picture(view.width, view.height);
     const int most = std::max(MESH_STRIP_PIXELS / picture.x, 1);
     const int first = row / most * most;
-    return {view.eye, view.forward, view.right, view.up,
+    return {view.eye, view.forward, view.right, view.up, view.skipped,
             picture,  space,        first,      std::min(most, picture.y - first)};
 }
 
@@ -49,10 +51,13 @@ interop::MeshView mesh_view(const Strip& strip, const voxelizer::Grid& lattice) 
         (lattice.origin - strip.space.origin) / strip.space.unit - glm::dvec3(strip.eye);
     const double side = unit * double(1 << LATTICE_BITS);
     interop::MeshView out{};
-    out.place = glm::dvec4(origin, unit);
-    out.across = glm::dvec4(rows[0], 0.0);
-    out.down = glm::dvec4(rows[1], side * MESH_NEAREST_PART);
-    out.along = glm::dvec4(rows[2], double(strip.forward.w));
+    out.origin = origin;
+    out.lattice_unit = unit;
+    out.across = rows[0];
+    out.down = rows[1];
+    out.nearest = side * MESH_NEAREST_PART;
+    out.along = rows[2];
+    out.skipped = double(strip.skipped);
     return out;
 }
 
@@ -62,7 +67,7 @@ gl::Buffer index_buffer(const voxelizer::GpuSurfaceChunk& chunk) {
     indices.reserve(3 * triangles.size());
     for (const interop::SurfaceTriangle& triangle : triangles) {
         for (int corner = 0; corner < 3; ++corner)
-            indices.push_back(triangle.vertices_material[corner]);
+            indices.push_back(triangle.vertices[corner]);
     }
     return gl::Buffer::of(std::span<const std::uint32_t>(indices), "indices of a mesh");
 }
@@ -151,8 +156,11 @@ void MeshRaster::Parts::begin(const Strip& strip, const MeshTargets& targets) {
     view.forward = strip.forward;
     view.right = strip.right;
     view.up = strip.up;
-    view.size_shadow = glm::ivec4(strip.picture, 0, 0);
-    view.band = glm::ivec4(strip.first_row, strip.rows, 0, 0);
+    view.skipped = strip.skipped;
+    view.width = strip.picture.x;
+    view.height = strip.picture.y;
+    view.first_row = strip.first_row;
+    view.row_count = strip.rows;
     view_buffer.write(0, &view, sizeof(view));
     const interop::MeshView placing = mesh_view(strip, lattice);
     mesh_view_buffer.write(0, &placing, sizeof(placing));

@@ -4,8 +4,9 @@
 #include <string>
 
 #include "base/error.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/columns.h"
+#include "shaders/interop/mesh.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::renderer {
 namespace {
@@ -37,20 +38,20 @@ const gl::Program& ColumnShadows::program(bool is_soft) {
 
 std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, const ColumnPyramid& pyramid,
                                                 const ColumnReceivers& receivers) {
-    const std::size_t pixels = std::size_t(view.size_shadow.x) * std::size_t(view.band.y);
+    const std::size_t pixels = std::size_t(view.width) * std::size_t(view.row_count);
     if (image_.size_bytes() < pixels * sizeof(std::uint32_t)) {
         image_ = gl::Buffer(pixels * sizeof(std::uint32_t), "picture");
         sums_ = gl::Buffer(pixels * sizeof(glm::uvec2), "sums of shadow rays");
     }
     view_.write(0, &view, sizeof(view));
-    const gl::Program& lighting = program(view.area_light.x > 1);
+    const gl::Program& lighting = program(view.shadow_rays > 1);
     lighting.set("mesh_first_row", receivers.first_row);
     lighting.set("mesh_shadows", 1);
     lighting.set("mesh_own_height", receivers.own_height);
     glFinish();
     const auto start = std::chrono::steady_clock::now();
     view_.bind_uniform(UBO_VIEW);
-    image_.bind_storage(SSBO_IMAGE);
+    image_.bind_storage(SSBO_PICTURE);
     sums_.bind_storage(SSBO_SHADOW_SUMS);
     counts_.bind_storage(SSBO_COLUMN_COUNTS);
     pyramid.bind_for_reading();

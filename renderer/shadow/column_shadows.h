@@ -8,7 +8,7 @@
 #include "gl/shader_source.h"
 #include "renderer/shadow/column_mask.h"
 #include "renderer/shadow/column_pyramid.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
 
 namespace cairn::renderer {
 

@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::renderer {
 

@@ -11,7 +11,7 @@ bool is_occupied(ivec3 voxel, Place place, int mip) {
     const ivec3 b = place_in(voxel, own_shift_of(place) + mip, M_SHIFT - mip);
     const ivec3 c = cell_of(b, BLOCK_SHIFT);
     const int blocks = MIP_BLOCKS_A_SIDE(mip);
-    const int word = place.slot * MASK_WORDS_A_SLOT + first_mask_of(mip) + c.x + blocks * (c.y + blocks * c.z);
+    const int word = place.slot * MASK_WORDS + first_mask_of(mip) + c.x + blocks * (c.y + blocks * c.z);
     return empty_voxel_shift(texelFetch(brick_masks, word).xy, b - cell_low(b, BLOCK_SHIFT)) < 0;
 }
 

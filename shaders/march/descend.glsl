@@ -1,4 +1,8 @@
 // Down the tree, to the tile that a ray asks for.
+#include "interop/march.h"
+#include "interop/tile_query.h"
+#include "interop/windows.h"
+
 // The brick that a ray is in.
 struct Place {
     int slot;         // -1: none
@@ -46,7 +50,7 @@ bool needs_coarser(Ray ray, Place place) {
 
 void use_brick(inout Place place, int slot) {
     place.slot = slot;
-    place.summary = texelFetch(brick_masks, slot * MASK_WORDS_A_SLOT).xy;
+    place.summary = texelFetch(brick_masks, slot * MASK_WORDS).xy;
     touch(slot);
 }
 
@@ -118,7 +122,7 @@ bool shows(Ray ray, int tile_shift) {
 // Level of a tile of this size around the ray.
 int level_of_tile(Ray ray, int tile_shift) {
 #if WINDOWS
-    return windows.of[ray.window].shift_level.w + (ROOT_SHIFT - tile_shift) / N_SHIFT;
+    return windows.of[ray.window].level + (ROOT_SHIFT - tile_shift) / N_SHIFT;
 #else
     return (ROOT_SHIFT - tile_shift) / N_SHIFT;
 #endif

@@ -11,9 +11,10 @@
 // visit_constant() too. With HAS_FINAL, tiles may have nothing finer to show. With BLENDED, rays see two mips of a brick, whose
 // shares lead over from one size of voxels to the next (blend.glsl).
 //
-// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth, or with WINDOWS that under a window's tiles), HAS_COLOR,
-// PROGRESSIVE and TRAVERSAL; WINDOWS for trees whose voxels a ray cannot count (windows.glsl); BRICK_MIPS and BLENDED where
-// there are mips; and of the includer RAYS_WIDEN: whether cone_slope is other than 0.
+// Needs the defines of TreeShape::defines() (with WINDOWS, for trees whose voxels a ray cannot count, MAX_LEVEL is the
+// depth under a window's tiles) and of renderer/march/march_programs.h; and of the includer RAYS_WIDEN: whether cone_slope
+// is other than 0, and VISIT_TURNS: loop turns that visit() takes at most, which a pass counts (TURN_BUDGET).
+#include "interop/march.h"
 #include "march/buffers.glsl"
 #include "march/tree_cells.glsl"
 #include "march/ray.glsl"
@@ -38,11 +39,6 @@ struct Sample {
     float side;           // of the voxel
     float share;          // weight against the other mip's voxels in the same place, (0, 1]
 };
-
-// Loop turns that visit() takes at most; a pass counts them (TURN_BUDGET).
-#ifndef VISIT_TURNS
-#define VISIT_TURNS 0
-#endif
 
 // Takes one occupied voxel; false stops the ray.
 bool visit(inout Ray ray, Sample s);
@@ -131,7 +127,7 @@ bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_
     const float side = float(cell_side(voxel_shift));
     const float t_in = ray.t;
     Sample s;
-    s.texel = slot_texel(place.slot, mip);
+    s.texel = first_texel(place.slot, mip);
     s.mip = mip;
     s.voxel = cell_of(low - brick_low, voxel_shift);
     s.side = side;

@@ -1,4 +1,5 @@
 // What rays tell the cache: what they miss, and what they used.
+#include "interop/tile_query.h"
 
 // The last resort of queries for which there is no room: without it the same ones might get it in each pass, and a ray whose
 // data was to come next lose what it had been given to those that ask in between.

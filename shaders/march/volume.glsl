@@ -5,6 +5,7 @@
 // 2001, section 3). Opacity is 1 - exp(-extinction * length), in world units, so it depends on no step.
 //
 // Needs the define VOLUME_STEPS: steps a voxel's chord.
+#include "interop/volume.h"
 layout(binding = TEXTURE_TRANSFER) uniform sampler2D transfer;
 layout(std140, binding = UBO_VOLUME) uniform VolumeBlock { VolumeView volume; };
 

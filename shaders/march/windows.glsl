@@ -7,6 +7,8 @@
 // out, and near the eye as far from it a ray has the same bits for each voxel that its cone asks for. Descents start at
 // the window's tiles, not at the root, and take as many steps however deep the tree is. (The nesting is that of clip maps:
 // Tanner, Migdal and Jones 1998.)
+#include "interop/tile_query.h"
+#include "interop/windows.h"
 layout(std140, binding = UBO_WINDOWS) uniform WindowBlock {
     ivec4 count;
     MarchWindow of[MAX_WINDOWS];
@@ -28,11 +30,11 @@ int window_rank(Ray ray) {
 
 // Counts in the voxels of the next window.
 void coarsen(inout Ray ray) {
-    const ivec3 shift = windows.of[ray.window].shift_level.xyz;
+    const ivec3 shift = windows.of[ray.window].shift;
     const float scale = 1.0 / float(TREE_N);
     ++ray.window;
     // The eye is known better than what is left of it after rounding in each window.
-    ray.origin = ray.from_eye ? windows.of[ray.window].eye.xyz : ray.origin * scale + vec3(shift);
+    ray.origin = ray.from_eye ? windows.of[ray.window].eye : ray.origin * scale + vec3(shift);
     ray.voxel = cell_of(ray.voxel, N_SHIFT) + shift;
     ray.t *= scale;
     ray.t_end *= scale;

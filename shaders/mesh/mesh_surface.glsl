@@ -1,5 +1,6 @@
 // The rasterized mesh at a pixel: x, y: base colour (linear, half floats); z: normal; w: normal of the triangle's plane,
 // turned to the viewer.
+#include "interop/mesh.h"
 #include "voxelize/octahedral.glsl"
 
 layout(binding = TEXTURE_MESH_NEAREST) uniform sampler2D mesh_nearest;
@@ -18,7 +19,7 @@ struct MeshPixel {
 
 // `pixel` in the band.
 MeshPixel mesh_pixel(ivec2 pixel) {
-    const ivec2 place = pixel + ivec2(0, view.band.x - mesh_first_row);
+    const ivec2 place = pixel + ivec2(0, view.first_row - mesh_first_row);
     const uvec4 surface = texelFetch(mesh_surface, place, 0);
     MeshPixel mesh = MeshPixel(texelFetch(mesh_nearest, place, 0).r, vec3(0.0), vec3(0.0), vec3(0.0));
     if (surface.w != 0u) {

@@ -1,6 +1,5 @@
 // The set of renderer/produce/fractal_content.h inside one tile and around it: the sponge where N = 3, else the fractal.
-#include "interop/bindings.h"
-#include "interop/types.h"
+#include "interop/produce.h"
 
 layout(std430, binding = SSBO_BRICK_TILES) readonly buffer TileBlock { FractalTile tiles[]; };
 

@@ -1,8 +1,6 @@
 // What the producer gathers for each voxel of the batch, border included, before it is packed into the pool.
 // Sums are whole numbers, so the order of the threads does not show in the brick.
-#include "interop/config.h"
-#include "interop/bindings.h"
-#include "interop/types.h"
+#include "interop/produce.h"
 #include "pool/brick_levels.glsl"
 
 // Every mip of a brick is gathered like a brick of its own, from the triangles themselves: so it equals the same part of the

@@ -1,8 +1,7 @@
 // The xy-reduced pyramid of Forest et al. 2009, section 2.3: level l has (side / 2^l)^2 columns, each with all its bits. A
 // column runs along x, as the words of a BitGrid do: their z is our x, and their x and y are our y and z.
 // Needs the define COLUMN_LEVELS: log2 of the side.
-#include "interop/config.h"
-#include "interop/bindings.h"
+#include "interop/columns.h"
 
 #define COLUMN_SIDE (1 << COLUMN_LEVELS)
 #define COLUMN_TEXELS ((COLUMN_SIDE + COLUMN_TEXEL_BITS - 1) / COLUMN_TEXEL_BITS)  // of a column

@@ -1,6 +1,6 @@
 // The share of the light that one micro-patch hides from one receiver point (Atty et al. 2005, section 3.4): the patch,
 // projected back onto the light, meets it in a rectangle. Blending adds the shares of all patches.
-#include "interop/bindings.h"
+#include "interop/shadow_map.h"
 
 layout(binding = TEXTURE_SHADOW_RECEIVERS) uniform sampler2D receivers;
 uniform vec4 tangents_from_pixel;  // scale, offset: tangents over the light's width and height

@@ -2,11 +2,7 @@
 // with the penumbra extent on the receiver map that it may darken. One thread a row of the map. The first pass counts, the
 // second writes, so that the list is in the order of the texels, whatever order the threads run in: sums of floats depend
 // on theirs.
-// defines: LIST_WRITES=0
-// defines: LIST_WRITES=1
-#include "interop/bindings.h"
-#include "interop/config.h"
-#include "interop/types.h"
+#include "interop/shadow_map.h"
 #include "shadow/window.glsl"
 
 layout(local_size_x = SHADOW_LIST_GROUP) in;

@@ -11,15 +11,17 @@
 // coordinate by at least one.
 //
 // Needs the defines COLUMN_LEVELS and COLUMN_MASK.
+#include "interop/columns.h"
 
 // Where a ray begins: on a surface, where larger columns are not empty. From the root on, as Forest et al. begin, the same
 // voxels are found later.
 #define COLUMN_START_LEVEL 2
-#define TREE_N 2
-#define BRICK_M 8
-#define MAX_LEVEL (COLUMN_LEVELS - 3)
 #include "shadow/columns.glsl"
-#include "march/tree_cells.glsl"
+
+#define CELL_BASE 2
+#define WINDOWS 0
+#define MARCHED_SIDE COLUMN_SIDE
+#include "march/cells.glsl"
 #include "march/ray.glsl"
 
 // An occupied voxel that the ray crosses, and the distance of the middle of its way through it; false stops the ray.

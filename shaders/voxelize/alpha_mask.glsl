@@ -17,6 +17,8 @@
 // Clipping: Sutherland and Hodgman 1974, closed: what only touches is left as a segment or a point.
 //
 // Drivers inline every call, so each step is written once, inside loops, and what it works on is private memory.
+#include "interop/surface.h"
+#include "interop/voxelize.h"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_attributes.glsl"
 
@@ -32,13 +34,13 @@ struct MaskedTriangle {
 };
 
 MaskedTriangle masked_triangle(uint triangle) {
-    const uvec4 corners = surface_triangles[triangle].vertices_material;
+    const uvec3 corners = surface_triangles[triangle].vertices;
     MaskedTriangle m;
     const ivec3 a = surface_position(corners.x), b = surface_position(corners.y), c = surface_position(corners.z);
     m.x = ivec3(a.x, b.x, c.x);
     m.y = ivec3(a.y, b.y, c.y);
     m.z = ivec3(a.z, b.z, c.z);
-    m.material = surface_materials[corners.w];
+    m.material = surface_materials[surface_triangles[triangle].material];
     m.alpha = ivec3(attributes[corners.x].color >> 24, attributes[corners.y].color >> 24,
                     attributes[corners.z].color >> 24);
     const vec2 ta = attributes[corners.x].texcoord, tb = attributes[corners.y].texcoord,

@@ -1,6 +1,5 @@
 // Which triangle touches which occupied voxel.
-#include "interop/bindings.h"
-#include "interop/config.h"
+#include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_ATTRIBUTE_PAIRS) restrict buffer AttributePairs {
     uint pair_count;  // past ATTRIBUTE_PAIRS some found no room

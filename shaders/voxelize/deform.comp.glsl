@@ -2,13 +2,12 @@
 // scenes/deform.cpp, scenes/transform.h and Grid::lattice_from_world do, operation by operation, so that positions have the
 // same bits. `precise` keeps the driver from fusing and from changing the order. Sums and products of doubles are the only
 // ones in need: drivers round those alike. Normals take quotients and roots too, and may differ in the last step.
-// defines: NORMALS=0
-// defines: NORMALS=1
-#include "interop/bindings.h"
-#include "interop/config.h"
-#include "interop/types.h"
+#include "interop/deform.h"
+#include "interop/grid.h"
+#include "interop/surface.h"
 
-layout(local_size_x = DEFORM_GROUP) in;
+#define GROUP_SIZE DEFORM_GROUP
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_SURFACE_POSITIONS) restrict writeonly buffer PositionBlock { int positions[]; };
 #if NORMALS
@@ -149,7 +148,7 @@ uint packed_normal(dvec3 normal) {
 #endif
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * DEFORM_GROUP;
+    const uint thread = thread_index();
     if (thread >= count) return;
     const uvec4 at_rest = vertices[thread];
     const DeformItem item = items[at_rest.w];

@@ -16,8 +16,8 @@
 // Voxels are numbered in the whole root cube: voxel i spans [i, i + 1] * 2^shift. Boxes and triangles are closed:
 // contact counts. Segments and points are triangles too.
 //
-// With the define ANY_VOXEL_SIDE, `shift` is instead the voxel's side in lattice units: even, at most 2^24 (trees whose N
-// is no power of two). Not for the functions that step through rows.
+// Needs the define ANY_VOXEL_SIDE. Where it is 1, `shift` is instead the voxel's side in lattice units: even, at most 2^24
+// (trees whose N is no power of two). Not for the functions that step through rows.
 //
 // Separating axes: Akenine-Möller 2001. Each axis that has an x bounds x from one side by a linear function of the row,
 // the others accept or reject the row (Schwarz and Seidel 2010, section 3). A projection of no area is replaced by its
@@ -33,10 +33,6 @@
 const float FAR_AWAY = 1.0e30;
 const float SIDE_ERROR = 1.9073486328125e-6;    // 2^-19
 const double SPLIT = 67108864.0LF;              // 2^26
-
-#ifndef ANY_VOXEL_SIDE
-#define ANY_VOXEL_SIDE 0
-#endif
 
 // The three sides of a projection with an x, as bounds of x: at rows [r, r + 1] the bound nearest to the triangle's
 // outside is x - slope * (r - row).

@@ -5,14 +5,15 @@
 // three vertices are whole numbers: large triangles lose no accuracy, and those without area still have a piece.
 // It is cut in a fan, and where a texture may vary on it, each triangle of the fan in `rows`^2 equal ones, about as small
 // as a texel: each is sampled at its centroid.
-// defines: HAS_MASK=0
-// defines: HAS_MASK=1
+#include "interop/surface.h"
+#include "interop/voxelize.h"
 #include "voxelize/attribute_pairs.glsl"
 #include "voxelize/attribute_sums.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_color.glsl"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 uniform ivec3 region_origin;
 uniform int voxel_shift;
@@ -153,12 +154,12 @@ void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, S
 }
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint thread = thread_index();
     if (thread >= count) return;
     const uvec4 pair = pairs[thread];
     const ivec3 voxel = region_origin + ivec3(pair.x & 0xFFFFu, pair.x >> 16, pair.y);
-    const uvec4 triangle = surface_triangles[pair.w].vertices_material;
-    const SurfaceMaterial material = surface_materials[triangle.w];
+    const uvec3 triangle = surface_triangles[pair.w].vertices;
+    const SurfaceMaterial material = surface_materials[surface_triangles[pair.w].material];
     const ivec3 a = surface_position(triangle.x), b = surface_position(triangle.y), c = surface_position(triangle.z);
     const Piece piece = piece_in_voxel(a, b, c, voxel);
     if (piece.count == 0) return;
@@ -167,7 +168,7 @@ void main() {
     const double twice_area = length(cross_product);
     const vec3 own_normal = twice_area > 0.0LF ? vec3(cross_product / twice_area) : vec3(0.0);
     const double side = double(1 << voxel_shift);
-    const int rows = sample_rows(piece, triangle.xyz, material);
+    const int rows = sample_rows(piece, triangle, material);
     const int parts = rows * rows;
     const double faces_of_triangle = 0.5LF * twice_area / (side * side * double(parts));
 
@@ -181,7 +182,7 @@ void main() {
         const float faces = max(float(share * faces_of_triangle), 1.0e-20);
         for (int part = 0; part < parts; ++part) {
             const vec2 middle = centroid_of_part(vec2(first), vec2(p), vec2(q), part, rows);
-            sample_point(shown, hidden, point_at(triangle.xyz, middle), material, own_normal, faces);
+            sample_point(shown, hidden, point_at(triangle, middle), material, own_normal, faces);
         }
     }
     float weight = max(shown.weight, ATTRIBUTE_LEAST_WEIGHT);

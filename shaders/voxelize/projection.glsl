@@ -9,7 +9,7 @@
 //
 //     Projection project(ivec3 corners[CORNERS], int axis)   corners on the lattice; axis: the one that is looked along
 //     void put(Projection p, int corner, uint primitive)     writes the outputs of one vertex
-#include "interop/config.h"
+#include "interop/voxelize.h"
 
 #define VARYING out
 #include "voxelize/slice_inputs.glsl"

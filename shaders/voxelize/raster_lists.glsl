@@ -1,7 +1,6 @@
 // The primitives of a batch that may meet a tile, one list a kind (RASTER_*): how many each holds, then the numbers
 // of their vertices, then the numbers of their triangles in the bound chunk.
-#include "interop/bindings.h"
-#include "interop/config.h"
+#include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_RASTER_LISTS) restrict buffer RasterLists { uint raster_lists[]; };
 

@@ -1,23 +1,8 @@
 // Sets the bits of the slices that a primitive meets in a column of voxels (Forest et al. 2009, section 2.2): the logic
 // operation OR gathers them in the targets, of RASTER_TARGET_SLICES slices each.
-// defines: COVER=0 MASKED=0 TARGETS=1
-// defines: COVER=0 MASKED=0 TARGETS=2
-// defines: COVER=0 MASKED=0 TARGETS=4
-// defines: COVER=0 MASKED=0 TARGETS=8
-// defines: COVER=0 MASKED=1 TARGETS=1
-// defines: COVER=0 MASKED=1 TARGETS=2
-// defines: COVER=0 MASKED=1 TARGETS=4
-// defines: COVER=0 MASKED=1 TARGETS=8
-// defines: COVER=1 MASKED=0 TARGETS=1
-// defines: COVER=1 MASKED=0 TARGETS=2
-// defines: COVER=1 MASKED=0 TARGETS=4
-// defines: COVER=1 MASKED=0 TARGETS=8
-// defines: COVER=1 MASKED=1 TARGETS=1
-// defines: COVER=1 MASKED=1 TARGETS=2
-// defines: COVER=1 MASKED=1 TARGETS=4
-// defines: COVER=1 MASKED=1 TARGETS=8
 #define VARYING in
-#include "interop/config.h"
+#include "interop/surface.h"
+#include "interop/voxelize.h"
 #include "voxelize/slice_inputs.glsl"
 #if MASKED
 #include "voxelize/surface_color.glsl"
@@ -82,7 +67,7 @@ uvec4 slice_bits(ivec2 range, int target) {
 // The texel under the pixel's centre, or at the nearest point of the primitive.
 bool is_shown(vec2 place) {
     const uint triangle = raster_lists[triangle_place(kind, slice_primitive)];
-    const SurfaceMaterial material = surface_materials[surface_triangles[triangle].vertices_material.w];
+    const SurfaceMaterial material = surface_materials[surface_triangles[triangle].material];
     if ((material.flags >> MATERIAL_MASK_BIT & 1u) == 0u) return true;
     const uint corners = corners_of(kind);
     const uint vertex = first_vertex(kind) + slice_primitive * corners;

@@ -2,12 +2,11 @@
 //
 // Along x, a channel of a texel is a word of a row: one thread is one texel. Along y and z, one thread takes 32 texels of a
 // row, whose bits in one slice are a word.
-// defines: ALONG_X=0
-// defines: ALONG_X=1
 #include "voxelize/bits.glsl"
-#include "interop/config.h"
+#include "interop/voxelize.h"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 layout(binding = TEXTURE_SLICES) uniform usampler2DArray target_slices;
 uniform ivec3 tile_place;  // voxels from the region's low corner; x is a multiple of 32
@@ -66,7 +65,7 @@ void unite_texels(int word, int other) {
 #endif
 
 void main() {
-    const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP);
+    const int thread = int(thread_index());
 #if ALONG_X
     const int across = tall != 0 ? tile_size.z : tile_size.y;
     const int down = tall != 0 ? tile_size.y : tile_size.z;

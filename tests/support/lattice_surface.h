@@ -12,6 +12,7 @@
 #include "reference/exact_voxels.h"
 #include "reference/separating_axes.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/grid.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::test {

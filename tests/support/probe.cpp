@@ -6,9 +6,9 @@
 #include "gl/handle.h"
 #include "gl/program.h"
 #include "gl/shader_source.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/tile_query.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::test {
 namespace {
@@ -32,7 +32,7 @@ void main() {
     if (i >= probe_count || probes[i].state.x > 1) return;
     Ray ray = make_ray(probes[i].origin_t.xyz, probes[i].direction.xyz, 1e30, 0.0, 0.0);
 #if WINDOWS
-    ray.origin = windows.of[0].eye.xyz;
+    ray.origin = windows.of[0].eye;
     ray.from_eye = true;
 #endif
     seen = ivec4(-1);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "shaders/interop/config.h"
 
 namespace cairn::test {
 

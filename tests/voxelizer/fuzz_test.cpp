@@ -2,6 +2,7 @@
 // longer trial:
 //
 //     CAIRN_FUZZ_TRIALS=100000 CAIRN_FUZZ_SEED=7 voxelizer_fuzz_test
+#include "shaders/interop/grid.h"
 #include "tests/support/fuzz.h"
 
 #include <gtest/gtest.h>

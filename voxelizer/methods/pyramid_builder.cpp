@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/voxelize.h"
 
 namespace cairn::voxelizer {
 namespace {

@@ -8,8 +8,7 @@
 
 #include "base/error.h"
 #include "gl/draw_state.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/far_clip.h"
 
 namespace cairn::voxelizer {

@@ -10,7 +10,7 @@
 
 #include "gl/handle.h"
 #include "gl/program.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/voxelize.h"
 #include "voxelizer/methods/raster_tiles.h"
 #include "voxelizer/methods/slice_targets.h"
 #include "voxelizer/methods/voxelizer.h"
