@@ -55,11 +55,10 @@ Renderer::Renderer(std::shared_ptr<const Field> field, const TransferFunction& t
     const VolumeShape shape = make_volume_shape(field->frame(), options.n, options.m, options.max_resolution);
     auto content = std::make_unique<VolumeContent>(shape, std::move(field), transfer.visible());
     auto table = std::make_shared<TransferTable>(transfer, volume_options, content->grid().voxel_size);
-    MarchKind kind{"march/volume.comp.glsl",
-                   "march/volume_shadow.comp.glsl",
-                   {{"VOLUME_STEPS", std::to_string(volume_options.steps_per_voxel)}},
-                   [table] { table->bind(); },
-                   false};
+    MarchKind kind{.primary = "march/volume.comp.glsl",
+                   .shadow = "march/volume_shadow.comp.glsl",
+                   .volume_steps = volume_options.steps_per_voxel,
+                   .bind = [table] { table->bind(); }};
     parts_ = std::make_unique<Parts>(shape.tree, std::move(content), options, shaders, std::move(kind));
 }
 

@@ -38,8 +38,8 @@ std::vector<Question> by_urgency(const PassResult& pass, const Tree& tree) {
 }
 
 MarchKind with_content(MarchKind kind, const Content& content) {
-    if (content.has_constant()) kind.defines.emplace_back("HAS_CONSTANT", "1");
-    if (content.has_low_frequency()) kind.defines.emplace_back("HAS_FINAL", "1");
+    kind.has_constant = content.has_constant();
+    kind.has_final = content.has_low_frequency();
     return kind;
 }
 

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "gl/buffer.h"
 #include "gl/draw_state.h"
 #include "gl/handle.h"
-#include "gl/program.h"
+#include "gl/program_family.h"
 #include "renderer/mesh/mesh_targets.h"
 #include "shaders/interop/grid.h"
 #include "shaders/interop/mesh.h"
@@ -19,6 +21,13 @@ namespace cairn::renderer {
 namespace {
 
 constexpr unsigned group_size = 64;
+
+/// What tells the programs that draw a mesh apart.
+struct MeshVariant {
+    std::string fragment;  ///< the fragment shader
+    bool is_masked = false;
+    [[nodiscard]] auto operator<=>(const MeshVariant&) const = default;
+};
 
 /// Some rows of a picture, as the rays of a camera see them: what a drawing depends on.
 struct Strip {
@@ -75,12 +84,15 @@ gl::Buffer index_buffer(const voxelizer::GpuSurfaceChunk& chunk) {
 }  // namespace
 
 struct MeshRaster::Parts {
-    Parts(const voxelizer::Grid& grid, const gl::ShaderSource& source)
-        : shaders(source),
-          lattice(grid),
+    Parts(const voxelizer::Grid& grid, const gl::ShaderSource& shaders)
+        : lattice(grid),
           view_buffer(sizeof(interop::MarchView), "view of a mesh"),
           mesh_view_buffer(sizeof(interop::MeshView), "place of a mesh"),
-          place_triangles(gl::build_compute(shaders, "mesh/place_triangles.comp.glsl")) {
+          place_triangles(gl::build_compute(shaders, "mesh/place_triangles.comp.glsl")),
+          drawings([shaders](const MeshVariant& variant) {
+              return gl::build_raster(shaders, "mesh/project.vert.glsl", variant.fragment, {},
+                                      {{"MASKED", variant.is_masked ? "1" : "0"}});
+          }) {
         GLuint name = 0;
         glCreateVertexArrays(1, &name);
         vertex_array = gl::VertexArrayHandle(name);
@@ -112,14 +124,8 @@ struct MeshRaster::Parts {
         span_strip.reset();
     }
 
-    /// The program of a fragment shader, built when it is first used.
-    const gl::Program& program(gl::Program& cached, const char* fragment) const {
-        if (cached.id() == 0) {
-            cached = gl::build_raster(shaders, "mesh/project.vert.glsl", fragment, {},
-                                      {{"MASKED", surface->has_mask ? "1" : "0"}});
-        }
-        return cached;
-    }
+    /// The program of a fragment shader, for the surface that is shown.
+    const gl::Program& program(const char* fragment) { return drawings.get({fragment, surface->has_mask}); }
 
     void begin(const Strip& strip, const MeshTargets& targets);
     void place(std::size_t chunk, unsigned first, unsigned count);
@@ -128,7 +134,6 @@ struct MeshRaster::Parts {
     void draw_look(const Strip& strip);
     void draw_span(const Strip& strip);
 
-    gl::ShaderSource shaders;
     voxelizer::Grid lattice;
     std::uint64_t triangle_count = 0;
     voxelizer::GpuSurface own;                                  ///< where it is not the caller's
@@ -141,7 +146,7 @@ struct MeshRaster::Parts {
     gl::Buffer mesh_view_buffer;
     gl::VertexArrayHandle vertex_array;
     gl::Program place_triangles;
-    gl::Program find_nearest, look_of_surface, find_span;
+    gl::ProgramFamily<MeshVariant> drawings;
     MeshTargets nearest, look, span;
     std::optional<Strip> surface_strip, span_strip;  ///< what the targets hold
 };
@@ -216,7 +221,7 @@ void MeshRaster::Parts::draw_nearest(const Strip& strip) {
     glClearNamedFramebufferfv(nearest.framebuffer(), GL_COLOR, 0, nothing.data());
     glEnable(GL_BLEND);
     glBlendEquationi(0, GL_MIN);
-    draw_all(program(find_nearest, "mesh/find_nearest.frag.glsl"));
+    draw_all(program("mesh/find_nearest.frag.glsl"));
 }
 
 void MeshRaster::Parts::draw_look(const Strip& strip) {
@@ -230,7 +235,7 @@ void MeshRaster::Parts::draw_look(const Strip& strip) {
     constexpr std::array<GLuint, 4> nothing{};
     glClearNamedFramebufferuiv(look.framebuffer(), GL_COLOR, 0, nothing.data());
     glBindTextureUnit(TEXTURE_MESH_NEAREST, nearest.texture(0));
-    draw_all(program(look_of_surface, "mesh/draw_surface.frag.glsl"));
+    draw_all(program("mesh/draw_surface.frag.glsl"));
 }
 
 void MeshRaster::Parts::draw_span(const Strip& strip) {
@@ -249,7 +254,7 @@ void MeshRaster::Parts::draw_span(const Strip& strip) {
     glBlendEquationi(0, GL_MIN);
     glBlendEquationi(1, GL_FUNC_ADD);
     glBlendFunci(1, GL_ONE, GL_ONE);
-    draw_all(program(find_span, "mesh/find_span.frag.glsl"));
+    draw_all(program("mesh/find_span.frag.glsl"));
 }
 
 namespace {

@@ -1,5 +1,6 @@
 // One pass of shadow rays that march: a thread takes up a pixel that waits, sends its rays on, and leaves it to the next
 // pass where one of them must wait again.
+#include "interop/march.h"
 #define GROUP_SIZE 64
 #include "common/thread.glsl"
 #include "march/shadow_rays.glsl"

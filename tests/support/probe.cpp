@@ -6,6 +6,7 @@
 #include "gl/handle.h"
 #include "gl/program.h"
 #include "gl/shader_source.h"
+#include "renderer/march/march_programs.h"
 #include "shaders/interop/march.h"
 #include "shaders/interop/tile_query.h"
 #include "shaders/interop/windows.h"
@@ -58,11 +59,13 @@ void main() {
 )";
 
 gl::Program build(const renderer::TreeShape& shape) {
-    gl::Defines defines = shape.defines(false);
-    defines.emplace_back("PROGRESSIVE", "0");
+    const auto traversal =
+        shape.has_windows() ? renderer::Traversal::restart : renderer::Traversal::mini_stack;
+    gl::Defines defines = renderer::defines({.shape = shape, .traversal = traversal});
+    for (const auto& define : renderer::defines(renderer::MarchVariant{}))
+        defines.push_back(define);
     defines.emplace_back("RAYS_WIDEN", "0");
-    defines.emplace_back("TRAVERSAL",
-                         std::to_string(shape.has_windows() ? TRAVERSAL_RESTART : TRAVERSAL_MINI_STACK));
+    defines.emplace_back("VISIT_TURNS", "0");
     const std::string text = gl::ShaderSource().resolve("march/march.glsl", defines).text + probe_shader;
     const char* source = text.c_str();
     const gl::ShaderHandle shader(glCreateShader(GL_COMPUTE_SHADER));

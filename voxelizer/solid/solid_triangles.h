@@ -22,7 +22,7 @@ void for_each_triangle(const Surface& surface, const Add& add) {
     for (const SurfaceChunk& chunk : surface.chunks) {
         tbb::parallel_for(std::size_t(0), chunk.triangles.size(), [&](std::size_t i) {
             const glm::uvec3& numbers = chunk.triangles[i].vertices;
-            if (is_cut(numbers.w)) return;
+            if (is_cut(chunk.triangles[i].material)) return;
             std::array<glm::i64vec3, 3> corners;
             for (int corner = 0; corner < 3; ++corner) {
                 const auto& p = chunk.positions[numbers[corner]];

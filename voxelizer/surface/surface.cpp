@@ -134,7 +134,7 @@ private:
             for (const std::uint32_t vertex : item_vertices)
                 (void)number(vertex);
             part_.mesh.triangles.push_back(
-                {{number(vertices[0]), number(vertices[1]), number(vertices[2]), material}});
+                {{number(vertices[0]), number(vertices[1]), number(vertices[2])}, material});
         } else {
             part_.far_triangles.push_back(
                 {{a, b, c},
