@@ -23,7 +23,6 @@ struct PyramidShadowRenderer::Parts {
     Parts(const voxelizer::Grid& shown_grid, const PyramidShadowOptions& options,
           const gl::ShaderSource& shaders)
         : grid(shown_grid),
-          shape(make_tree_shape(2, 8, options.resolution)),
           pyramid(options.resolution, shaders),
           shadows(pyramid, options.mask, shaders),
           voxelizer(shaders) {
@@ -35,7 +34,6 @@ struct PyramidShadowRenderer::Parts {
     [[nodiscard]] std::vector<std::uint32_t> light(const View& view, int shown);
 
     voxelizer::Grid grid;
-    TreeShape shape;  ///< of the same voxels, for what a view is checked by
     ColumnPyramid pyramid;
     ColumnShadows shadows;
     voxelizer::ConservativeVoxelizer voxelizer;
@@ -59,11 +57,11 @@ void PyramidShadowRenderer::Parts::build_pyramid() {
 
 /// @param shown  SHOW_SURFACE or SHOW_LIGHT
 std::vector<std::uint32_t> PyramidShadowRenderer::Parts::light(const View& view, int shown) {
-    check_view(view, shape);
+    check_view(view);
     const auto start = Clock::now();
     statistics = {.move_ms = move_ms, .pyramid_bytes = pyramid.size_bytes()};
     build_pyramid();
-    interop::MarchView marched = march_view(view, grid, shape, nullptr);
+    interop::MarchView marched = march_view(view, grid);
     marched.shown = shown;
     marched.background_pixel = 0;
     std::vector<std::uint32_t> pixels;

@@ -137,4 +137,8 @@ interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, con
     return march_view(unanchored, in_voxels(unanchored, grid), shape.n);
 }
 
+interop::MarchView march_view(const View& view, const voxelizer::Grid& grid) {
+    return march_view(view, in_voxels(view, grid), 1);
+}
+
 }  // namespace cairn::renderer

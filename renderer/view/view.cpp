@@ -81,6 +81,13 @@ void check_anchor(const std::optional<Tile>& anchor, const TreeShape& shape) {
 
 }  // namespace
 
+void check_view(const View& view) {
+    check_camera(view);
+    if (view.anchor)
+        throw Error(Fault::usage, "view", "the camera is anchored in a tree, and there is none",
+                    "give it a place in the world");
+}
+
 void check_view(const View& view, const TreeShape& shape) {
     check_camera(view);
     check_anchor(view.anchor, shape);
