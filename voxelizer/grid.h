@@ -13,9 +13,9 @@ namespace cairn::voxelizer {
 /// origin + (i+1, j+1, k+1) * voxel_size. World to grid is a uniform scale and a translation.
 ///
 /// The grid is the low corner of its *root cube*, whose side is the next power of two of voxels. The root
-/// cube carries the *lattice*: 2^24 units a side. A vertex is rounded once to the lattice, and the rounded
-/// triangle is the triangle (docs/decisions.md), so voxel planes are whole lattice numbers at every level,
-/// whatever the resolution.
+/// cube carries the *lattice*: 2^24 units per axis. A vertex is rounded once to the lattice, and the rounded
+/// triangle is the triangle (docs/decisions/voxelizing.md). So voxel planes are whole lattice numbers at
+/// every level, whatever the resolution.
 struct Grid {
     glm::dvec3 origin{0.0};
     double voxel_size = 1.0;

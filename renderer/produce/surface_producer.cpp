@@ -13,8 +13,8 @@ constexpr std::size_t scratch_budget_bytes = std::size_t(24) << 20U;
 /// Pairs sent to the driver at once.
 constexpr std::size_t pair_capacity = std::size_t(1) << 18U;
 /// A triangle that crosses a whole brick is cut in pieces, for threads to share and because no thread may
-/// turn its loops too often (docs/decisions.md). A voxel takes a turn for itself, 16 for its rows, and 64
-/// more for an alpha mask.
+/// turn its loops too often (docs/decisions/house_and_scenes.md). A voxel takes a turn for itself, 16 for its
+/// rows, and 64 more for an alpha mask.
 constexpr int turns_a_pair = 30000;
 constexpr unsigned group_size = 64;
 

@@ -13,10 +13,11 @@ namespace cairn::voxelizer {
 /// normals in world space. Values are stored as half floats. Index (i, j, k) is the centre of the voxel, as
 /// is OpenVDB's custom; the grids carry the transform to the world.
 ///
-/// The file is written without the library, which needs the whole tree in memory (docs/decisions.md). Its
-/// layout is that of file version 224, as OpenVDB 7 to 12 write it: io/Archive.cc, tree/InternalNode.h,
-/// io/Compression.h. Memory: 40 bytes a tile that holds voxels, and one tile. A temporary file holds 64 bytes
-/// for each 8^3 voxels that are not empty, and 12 for each voxel with attributes.
+/// The file is written without the library, which needs the whole tree in memory
+/// (docs/decisions/voxelizing.md). Its layout is that of file version 224, as OpenVDB 7 to 12 write it:
+/// io/Archive.cc, tree/InternalNode.h, io/Compression.h. Memory: 40 bytes per tile that holds voxels, and one
+/// tile. A temporary file holds 64 bytes for each 8^3 voxels that are not empty, and 12 for each voxel with
+/// attributes.
 [[nodiscard]] std::unique_ptr<VoxelWriter> make_vdb_writer(const std::filesystem::path& path,
                                                            const Grid& grid);
 
