@@ -29,8 +29,8 @@ private:
     std::set<std::string, std::less<>> defined_;
 };
 
-/// Marks the lines that stand between `#ifdef __cplusplus` and its `#endif`, with these two: a header that C++
-/// and GLSL share has them for C++ alone.
+/// Marks the lines that stand between `#ifdef __cplusplus` and its `#endif`, with these two: a header that
+/// C++ and GLSL share has them for C++ alone.
 [[nodiscard]] std::vector<bool> lines_for_cpp(const std::vector<std::string>& lines);
 
 }  // namespace cairn::gl

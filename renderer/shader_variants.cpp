@@ -53,9 +53,9 @@ std::vector<gl::ShaderVariants> of_producers() {
             }
         }
     }
-    return {{"produce/fractal.comp.glsl", fractal},   {"produce/fractal_masks.comp.glsl", fractal},
-            {"produce/masks.comp.glsl", surface},     {"produce/resolve.comp.glsl", surface},
-            {"produce/splat.comp.glsl", surface},     {"produce/summarize.comp.glsl", surface}};
+    return {{"produce/fractal.comp.glsl", fractal}, {"produce/fractal_masks.comp.glsl", fractal},
+            {"produce/masks.comp.glsl", surface},   {"produce/resolve.comp.glsl", surface},
+            {"produce/splat.comp.glsl", surface},   {"produce/summarize.comp.glsl", surface}};
 }
 
 std::vector<gl::ShaderVariants> of_meshes() {
@@ -103,7 +103,11 @@ std::vector<MarchSetting> march_settings() {
         {{4, 16, 4}, true, Traversal::mini_stack, TileQueries::blocks},
         {{2, 8, 7, 1}, false, Traversal::stackless},
         {{8, 8, 3, 3}, false, Traversal::restart},
-        {{8, 16, 3}, true, Traversal::stackless, TileQueries::list, {.has_constant = true, .has_final = true}},
+        {{8, 16, 3},
+         true,
+         Traversal::stackless,
+         TileQueries::list,
+         {.has_constant = true, .has_final = true}},
         {{2, 16, 8}, false, Traversal::mini_stack, TileQueries::list, {.has_constant = true}},
         {{3, 27, 5}, true, Traversal::stackless},
         {{3, 81, 4}, false, Traversal::mini_stack},

@@ -67,13 +67,13 @@ std::vector<MarchVariant> valid_variants(RayKind rays, const MarchSetting& setti
 }
 
 gl::ProgramFamily<MarchVariant> march_programs(const MarchSetting& setting, const gl::ShaderSource& shaders) {
-    return gl::ProgramFamily<MarchVariant>(
-        [common = defines(setting), primary = setting.kind.primary, shadow = setting.kind.shadow,
-         shaders](const MarchVariant& variant) {
-            gl::Defines all = common;
-            append(all, defines(variant));
-            return gl::build_compute(shaders, variant.rays == RayKind::primary ? primary : shadow, all);
-        });
+    return gl::ProgramFamily<MarchVariant>([common = defines(setting), primary = setting.kind.primary,
+                                            shadow = setting.kind.shadow,
+                                            shaders](const MarchVariant& variant) {
+        gl::Defines all = common;
+        append(all, defines(variant));
+        return gl::build_compute(shaders, variant.rays == RayKind::primary ? primary : shadow, all);
+    });
 }
 
 }  // namespace cairn::renderer

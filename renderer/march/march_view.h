@@ -18,8 +18,8 @@ namespace cairn::renderer {
 [[nodiscard]] interop::MarchView march_view(const View& view, const voxelizer::Grid& grid,
                                             const TreeShape& shape, const Window* coarsest);
 
-/// Likewise for voxels of one size, without a tree: the view has no anchor, and a ray's cone is as wide as its
-/// pixel.
+/// Likewise for voxels of one size, without a tree: the view has no anchor, and a ray's cone is as wide as
+/// its pixel.
 [[nodiscard]] interop::MarchView march_view(const View& view, const voxelizer::Grid& grid);
 
 }  // namespace cairn::renderer

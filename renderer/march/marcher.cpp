@@ -56,7 +56,8 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& opt
                  const gl::ShaderSource& shaders, MarchKind kind)
     : options_(options_for(shape, options)),
       kind_(std::move(kind)),
-      programs_(march_programs({shape, has_color, options_.traversal, options_.tile_queries, kind_}, shaders)),
+      programs_(
+          march_programs({shape, has_color, options_.traversal, options_.tile_queries, kind_}, shaders)),
       view_(sizeof(interop::MarchView), "view"),
       shadow_ends_(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE * sizeof(float), "ends of shadow rays"),
       queries_(query_urgent_offset + QUERY_RANKS * sizeof(std::uint32_t), "tile query buffer"),

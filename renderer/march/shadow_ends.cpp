@@ -47,7 +47,8 @@ ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree, bool is
     const dvec3 forward(view.forward);
     const ConeOfSight cone{dvec3(view.eye) - double(view.skipped) * forward, double(view.pixel_cone),
                            is_blended};
-    const double voxel = largest_voxel(shape, cone, cone.width * std::max(double(view.shadow_cone_scale), 1.0));
+    const double voxel =
+        largest_voxel(shape, cone, cone.width * std::max(double(view.shadow_cone_scale), 1.0));
     const double slack = place_margin * root_side;
     const auto add = [&](const Box& box) {
         // A ray may meet the voxels of a coarser level there.

@@ -44,8 +44,9 @@ Strip strip_of(const interop::MarchView& view, const MarchSpace& space, int row)
     const glm::ivec2 picture(view.width, view.height);
     const int most = std::max(MESH_STRIP_PIXELS / picture.x, 1);
     const int first = row / most * most;
-    return {view.eye, view.forward, view.right, view.up, view.skipped,
-            picture,  space,        first,      std::min(most, picture.y - first)};
+    return {view.eye, view.forward, view.right,
+            view.up,  view.skipped, picture,
+            space,    first,        std::min(most, picture.y - first)};
 }
 
 /// Undoes pixel_ray(): a point `p` from the moved eye is x * w * right - y * w * up + along * forward, with w

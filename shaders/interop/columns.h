@@ -12,8 +12,8 @@
 #define COLUMN_TEXEL_BITS 128
 #define COLUMN_MASK_MIP_LEVEL 0
 #define COLUMN_MASK_ADAPTIVE 1
-// Log2 of voxels per side. A ray turns its loops fewer than 12 times for each, which past TURN_BUDGET must stay under the
-// turns that llvmpipe grants (VOXEL_REGION_SIDE).
+// Log2 of voxels per side. A ray turns its loops fewer than 12 times for each, which past TURN_BUDGET must
+// stay under the turns that llvmpipe grants (VOXEL_REGION_SIDE).
 #define COLUMN_LEAST_LEVELS 3
 #define COLUMN_MOST_LEVELS 11
 

@@ -6,7 +6,8 @@
 #include "shaders/interop/vectors.h"
 #endif
 
-#define SSBO_DEFORM_VERTICES 1    // uvec4 per vertex. xyz: bits of its floats at rest, in mesh space; w: its DeformItem
+// uvec4 per vertex. xyz: bits of its floats at rest, in mesh space; w: its DeformItem.
+#define SSBO_DEFORM_VERTICES 1
 #define SSBO_DEFORM_VECTORS 3     // float[3] each: normals at rest, and displacements of morph targets
 #define SSBO_DEFORM_INFLUENCES 4  // DeformInfluences
 #define SSBO_DEFORM_ITEMS 5       // DeformItem
@@ -24,7 +25,8 @@ namespace cairn::interop {
 // A run of a chunk's vertices that move alike: one primitive at one place.
 struct DeformItem {
     uint first_vertex;     // in the chunk
-    uint matrix;           // in SSBO_DEFORM_MATRICES: world_from_mesh, then normal_from_mesh in its first nine numbers
+    // In SSBO_DEFORM_MATRICES: world_from_mesh, then normal_from_mesh in its first nine numbers.
+    uint matrix;
     uint first_joint;      // the matrix of the skin's first joint; DEFORM_NONE: no skin
     uint first_influence;  // of first_vertex
     uint set_count;        // DeformInfluences per vertex
@@ -33,14 +35,16 @@ struct DeformItem {
     uint target_count;
 };
 
-// Four influences of a skin on a vertex. A vertex has those that count first; the first weight of 0 ends them.
+// Four influences of a skin on a vertex. A vertex has those that count first; the first weight of 0 ends
+// them.
 struct DeformInfluences {
     uint joints[2];        // 16 bits each
     float weights[4];
 };
 
 struct DeformTarget {
-    uint first_position;   // displacement of the item's first_vertex, in SSBO_DEFORM_VECTORS; DEFORM_NONE: moves none
+    // Displacement of the item's first_vertex, in SSBO_DEFORM_VECTORS; DEFORM_NONE: moves none.
+    uint first_position;
     uint first_normal;     // displacement of its normal, likewise
     float weight;          // of this frame; finite
     uint padding;

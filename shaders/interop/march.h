@@ -12,17 +12,20 @@
 #define SSBO_PICTURE 4       // a word per pixel (shaders/march/picture.glsl)
 #define SSBO_BLOCK_STARTS 5  // BlockStart
 
-// Cells that a ray may cross in one pass. Past it the ray pauses between two tiles and goes on in the next pass, so that no
-// dispatch runs for long, and no thread turns its loops more often than a driver lets it. On llvmpipe up to 16 threads
-// go together, and each turn that any of them takes counts for all: where they part ways, their turns add up.
+// Cells that a ray may cross in one pass. Past it the ray pauses between two tiles and goes on in the next
+// pass, so that no dispatch runs for long, and no thread turns its loops more often than a driver lets it. On
+// llvmpipe up to 16 threads go together, and each turn that any of them takes counts for all: where they part
+// ways, their turns add up.
 #define TURN_BUDGET 2048
 
-// A ray stops when less light than this is left: half a step of an 8-bit image. Less coverage than this shows nothing.
+// A ray stops when less light than this is left: half a step of an 8-bit image. Less coverage than this shows
+// nothing.
 #define OPAQUE_TRANSMITTANCE (1.0 / 512.0)
 #define LEAST_COVERAGE (1.0 / 512.0)
 
-// A normal that looks away from the viewer by less than this (cosine) belongs to a silhouette, not to a back side. A voxel
-// tells by its two normals how far its surface bends; it is taken for flat when they tell less than the second number.
+// A normal that looks away from the viewer by less than this (cosine) belongs to a silhouette, not to a back
+// side. A voxel tells by its two normals how far its surface bends; it is taken for flat when they tell less
+// than the second number.
 #define SILHOUETTE_BEND 0.35
 #define VOXEL_SILHOUETTE_BEND 0.1
 
@@ -38,7 +41,8 @@
 #define SHOW_SURFACE 0
 #define SHOW_LEVELS 1
 #define SHOW_BRICKS 2
-#define SHOW_LIGHT 3  // bits of a float instead of a colour: the share of the light that arrives, SHOWN_NOTHING: nowhere
+// Bits of a float instead of a colour: the share of the light that arrives, SHOWN_NOTHING: nowhere.
+#define SHOW_LIGHT 3
 #define SHOWN_NOTHING (-1.0)
 
 // Colours of tree levels: 0.5 + 0.5 cos(LEVEL_HUE * level + phase), one phase per channel.
@@ -51,14 +55,15 @@
 namespace cairn::interop {
 #endif
 
-// What rays know of a view. All lengths in voxels of the finest level, positions from the root cube's low corner. Where rays
-// go through windows, `eye`, `light` and `light_is_positional` stand in MarchWindow instead. Buffers of pixels hold the band
-// alone: the rows of the picture that are marched at once.
+// What rays know of a view. All lengths in voxels of the finest level, positions from the root cube's low
+// corner. Where rays go through windows, `eye`, `light` and `light_is_positional` stand in MarchWindow
+// instead. Buffers of pixels hold the band alone: the rows of the picture that are marched at once.
 struct MarchView {
     vec3 eye;                  // moved forward to near the root cube, for the precision of floats
     float pixel_cone;          // width of a pixel's cone at distance 1
     vec3 forward;              // unit
-    float skipped;             // rays start this far from the eye, in the plane across `forward` that `eye` lies in
+    // Rays start this far from the eye, in the plane across `forward` that `eye` lies in.
+    float skipped;
     vec3 right;                // half the picture's width at distance 1
     int width;                 // of the picture, in pixels
     vec3 up;                   // half the picture's height at distance 1
@@ -98,7 +103,8 @@ struct RayState {
     float depth;           // distance of the voxel that weighs most: where shadow rays start
     uvec2 place;           // packed voxel where the ray stands, or RAY_NOT_STARTED in place.y
     float distance;        // of the ray, to there
-    float weight;          // primary: the greatest weight so far. Shadow: what the ray has been left of the light
+    // Primary: the greatest weight so far. Shadow: what the ray has been left of the light.
+    float weight;
 };
 // The highest bit of RayState.place.y, which no packed voxel has.
 #define RAY_NOT_STARTED 0x80000000u

@@ -9,26 +9,29 @@
 // Beside the surface's bindings, and UBO_VIEW.
 #define UBO_MESH_VIEW 1
 #define SSBO_MESH_TRIANGLES 5    // MeshTriangle: a batch of triangles, as this view sees them
-#define TEXTURE_MESH_NEAREST 8   // R32F per pixel: distance of the nearest mesh, MESH_MISS where there is none
+// R32F per pixel: distance of the nearest mesh, MESH_MISS where there is none.
+#define TEXTURE_MESH_NEAREST 8
 #define TEXTURE_MESH_SURFACE 9   // RGBA32UI per pixel: what is there (shaders/mesh/mesh_surface.glsl)
-#define TEXTURE_PROXY_SPAN 10    // RG32F per pixel: distance of the proxy's first face, minus that of its last
+// RG32F per pixel: distance of the proxy's first face, minus that of its last.
+#define TEXTURE_PROXY_SPAN 10
 #define TEXTURE_PROXY_FACES 11   // R32F per pixel: fronts less backs
 
 #define MESH_BATCH_TRIANGLES 262144  // triangles per draw call
 #define MESH_STRIP_PIXELS 4194304    // pixels of a picture that are drawn at once, in whole rows
 #define MESH_MISS 1e30               // the distance of what is not there
 #define MESH_NEAREST_PART 9.5367431640625e-7  // how near the eye a mesh may come, in sides of the mesh
-// A voxel that touches a triangle has its centre at most half a diagonal from its plane; a little more, where the surface
-// bends.
+// A voxel that touches a triangle has its centre at most half a diagonal from its plane; a little more, where
+// the surface bends.
 #define MESH_OWN_HEIGHT 1.125
 
 #ifdef __cplusplus
 namespace cairn::interop {
 #endif
 
-// How a mesh stands to the rays of a MarchView. A point of the lattice, p, lies at p * lattice_unit + origin from
-// MarchView.eye, in its units; from there, the rows give what its picture and its depth are in homogeneous coordinates:
-// x to the right, y downwards, both -1 to 1 over the picture, each times w = along + skipped.
+// How a mesh stands to the rays of a MarchView. A point of the lattice, p, lies at p * lattice_unit + origin
+// from MarchView.eye, in its units; from there, the rows give what its picture and its depth are in
+// homogeneous coordinates: x to the right, y downwards, both -1 to 1 over the picture, each times w = along +
+// skipped.
 struct MeshView {
     dvec3 origin;
     double lattice_unit;

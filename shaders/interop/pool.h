@@ -26,9 +26,9 @@
 namespace cairn::interop {
 #endif
 
-// One tile in the node pool (Crassin et al. 2008, section 4.2). A tile that is empty has no entry: its bit in the
-// parent's mask is 0. With N = 8 a bit stands for a group of 2^3 children, bit x + 4 (y + 4 z), and a child that is empty
-// in a group that is not has an entry of its own that says so.
+// One tile in the node pool (Crassin et al. 2008, section 4.2). A tile that is empty has no entry: its bit in
+// the parent's mask is 0. With N = 8 a bit stands for a group of 2^3 children, bit x + 4 (y + 4 z), and a
+// child that is empty in a group that is not has an entry of its own that says so.
 struct NodeEntry {
     uvec2 child_mask;  // bit x + N (y + N z): child (x, y, z) is not empty
     uint children;     // number of the first child's entry; 0 = leaf

@@ -1,4 +1,5 @@
-// The producers: tiles whose bricks are being made, and what is gathered for them (beside the surface's bindings 0 to 4).
+// The producers: tiles whose bricks are being made, and what is gathered for them (beside the surface's
+// bindings 0 to 4).
 #ifndef CAIRN_INTEROP_PRODUCE_H
 #define CAIRN_INTEROP_PRODUCE_H
 
@@ -39,7 +40,8 @@ struct FractalTile {
 struct BrickPair {
     uint triangle;      // local to the bound surface chunk
     uint tile_mip;      // tile of the batch | mip << 16
-    uint rows;          // of the mip: first y | count of y << 8 | first z << 16 | count of z << 24, border included
+    // Of the mip: first y | count of y << 8 | first z << 16 | count of z << 24, border included.
+    uint rows;
 };
 
 #ifdef __cplusplus

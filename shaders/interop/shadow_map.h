@@ -14,7 +14,8 @@
 #define TEXTURE_SHADOW_BASE_COLOR 0  // of the material that is drawn
 #define TEXTURE_SHADOW_OCCLUDERS 0   // inverse depths: the closest occluders, or the furthest
 #define TEXTURE_SHADOW_RECEIVERS 1   // inverse depths; 0 = no receiver
-#define TEXTURE_SHADOW_PYRAMID 2     // the least inverse depth of receivers, level by level; SHADOW_NONE = none
+// The least inverse depth of receivers, level by level; SHADOW_NONE = none.
+#define TEXTURE_SHADOW_PYRAMID 2
 #define TEXTURE_SHADOW_HIDDEN 3      // sums of what micro-patches hide of the light
 #define TEXTURE_SHADOW_HIDDEN_FURTHEST 4
 #define TEXTURE_SHADOW_VISIBLE 5     // the soft shadow map
@@ -35,8 +36,8 @@
 namespace cairn::interop {
 #endif
 
-// A texel of the occluder map as a small rectangle parallel to the light (Atty et al. 2005, section 3.2), and the texels of
-// the soft shadow map that it may darken. Words of two 16-bit halves: x | y << 16.
+// A texel of the occluder map as a small rectangle parallel to the light (Atty et al. 2005, section 3.2), and
+// the texels of the soft shadow map that it may darken. Words of two 16-bit halves: x | y << 16.
 struct MicroPatch {
     uint texel;            // of the occluder map
     float inverse_depth;   // 1 / distance from the light's plane

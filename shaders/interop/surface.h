@@ -13,12 +13,13 @@
 #define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each; then the counts of masks
 #define ATTRIBUTE_POSITION 0       // a vertex's position, where the surface is rasterized
 
-// A surface is cut in chunks of at most this many triangles, so that each of its buffers stays under the smallest
-// shader-storage limit in use (128 MiB). A triangle's global number is chunk * SURFACE_CHUNK_TRIANGLES + local.
+// A surface is cut in chunks of at most this many triangles, so that each of its buffers stays under the
+// smallest shader-storage limit in use (128 MiB). A triangle's global number is chunk *
+// SURFACE_CHUNK_TRIANGLES + local.
 #define SURFACE_CHUNK_TRIANGLES 2097152
 
-// Texture coordinates are rounded to 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a texel when an
-// alpha mask is read (shaders/voxelize/alpha_mask.glsl, voxelizer/surface/exact_mask.h).
+// Texture coordinates are rounded to 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a
+// texel when an alpha mask is read (shaders/voxelize/alpha_mask.glsl, voxelizer/surface/exact_mask.h).
 #define TEXCOORD_UNITS 67108864.0
 #define TEXCOORD_LIMIT 1048576.0
 #define TEXEL_UNITS 256
@@ -53,8 +54,8 @@ struct SurfaceMaterial {
     uint flags;           // MATERIAL_*
     float alpha_cutoff;
     uint alpha_threshold;  // passes: texel alpha * vertex alpha * 256 >= this, both alphas 0 to 255
-    // Masked and textured: first number in SSBO_SURFACE_TEXELS of (width + 1) * (height + 1). Number (x, y) counts the
-    // passing texels left of x and above y, for vertex alpha 255.
+    // Masked and textured: first number in SSBO_SURFACE_TEXELS of (width + 1) * (height + 1). Number (x, y)
+    // counts the passing texels left of x and above y, for vertex alpha 255.
     uint passing_offset;
     uint padding;
 };

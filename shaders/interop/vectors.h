@@ -1,7 +1,8 @@
 // The vector types of GLSL, for the structures that C++ shares with it.
 //
-// A vec3 here is always followed by a scalar, which fills its fourth component: so std140, std430 and C++ lay a structure
-// out alike, and its size is a multiple of 16. Each structure asserts its size, which a vec3 without a scalar would change.
+// A vec3 here is always followed by a scalar, which fills its fourth component: so std140, std430 and C++ lay
+// a structure out alike, and its size is a multiple of 16. Each structure asserts its size, which a vec3
+// without a scalar would change.
 #ifndef CAIRN_INTEROP_VECTORS_H
 #define CAIRN_INTEROP_VECTORS_H
 

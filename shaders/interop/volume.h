@@ -3,7 +3,8 @@
 #define CAIRN_INTEROP_VOLUME_H
 
 #define UBO_VOLUME 3
-#define TEXTURE_TRANSFER 12  // DENSITY_STEPS^2 texels: column s0, row s1; rgb: mean emission, a: mean extinction
+// DENSITY_STEPS^2 texels: column s0, row s1; rgb: mean emission, a: mean extinction.
+#define TEXTURE_TRANSFER 12
 
 // Densities that a brick tells apart; a transfer function is linear between them.
 #define DENSITY_STEPS 256
@@ -17,7 +18,8 @@ namespace cairn::interop {
 // What rays through a volume need to know. Lengths in voxels of the finest level.
 struct VolumeView {
     float voxel_size;     // world units
-    float full_gradient;  // densities per voxel: a gradient so steep is lit as a surface, one of 0 as fog; 0: all is fog
+    // Densities per voxel: a gradient so steep is lit as a surface, one of 0 as fog; 0: all is fog.
+    float full_gradient;
     float shadow_start;   // a shadow ray starts so many voxels of the level that is seen from the point
     float padding;
 };

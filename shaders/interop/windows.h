@@ -1,4 +1,5 @@
-// Windows: trees that are too deep for a ray to count their voxels (renderer/march/windows.h, shaders/march/windows.glsl).
+// Windows: trees that are too deep for a ray to count their voxels (renderer/march/windows.h,
+// shaders/march/windows.glsl).
 #ifndef CAIRN_INTEROP_WINDOWS_H
 #define CAIRN_INTEROP_WINDOWS_H
 
@@ -8,8 +9,8 @@
 
 #define UBO_WINDOWS 1  // their number, then MarchWindow from the finest on
 
-// Cubes of 2^3 tiles around the eye, one per level. Log2 of a window's tile, at most, in the voxels that the ray counts in:
-// floats tell 2^-7 of one.
+// Cubes of 2^3 tiles around the eye, one per level. Log2 of a window's tile, at most, in the voxels that the
+// ray counts in: floats tell 2^-7 of one.
 #define WINDOW_TILE_BITS 16
 #define MAX_WINDOWS 64
 // A tile of a window: the number of its entry, or

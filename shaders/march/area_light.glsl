@@ -1,8 +1,8 @@
 // Where the shadow rays of a pixel end: samples of a light that has an extent.
 //
-// Hammersley points, which are stratified in each coordinate and together, turned modulo 1 by an offset that is the
-// pixel's own (Cranley and Patterson 1976): neighbours take different samples, and a pixel takes the same ones in every
-// frame.
+// Hammersley points, which are stratified in each coordinate and together, turned modulo 1 by an offset that
+// is the pixel's own (Cranley and Patterson 1976): neighbours take different samples, and a pixel takes the
+// same ones in every frame.
 #include "interop/shadow_rays.h"
 
 // Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg.
@@ -53,7 +53,8 @@ LightSample flat_sample(vec3 centre, vec3 point, vec2 p) {
     return LightSample(direction, reach, sqrt(area / float(view.shadow_rays)) / reach);
 }
 
-// In the cone that the light fills, even in solid angle: 1 - cosine grows with the square of the disk's radius.
+// In the cone that the light fills, even in solid angle: 1 - cosine grows with the square of the disk's
+// radius.
 LightSample cone_sample(LightPlace light, vec3 point, vec2 disk) {
     const bool positional = light.is_positional;
     const vec3 way = positional ? light.at - point : light.at;
@@ -82,8 +83,9 @@ LightSample sample_at(vec3 point, vec2 place) {
 }
 
 #if SHADOW_CONES
-// Cones are wide themselves: so their middles keep off the light's edge by as much as all of them together keep the light's
-// second moment, and one alone goes to its middle. But no cone is wider than the root's voxels.
+// Cones are wide themselves: so their middles keep off the light's edge by as much as all of them together
+// keep the light's second moment, and one alone goes to its middle. But no cone is wider than the root's
+// voxels.
 vec2 cone_place(vec3 point, vec2 place) {
 #if WINDOWS
     const float kept = 1.0;

@@ -1,5 +1,5 @@
-// Aligned cubes of voxels, whose sides are powers of CELL_BASE in finest-level voxels. A power is called a shift, because
-// with CELL_BASE 2 it is one.
+// Aligned cubes of voxels, whose sides are powers of CELL_BASE in finest-level voxels. A power is called a
+// shift, because with CELL_BASE 2 it is one.
 // Needs the define CELL_BASE: 2 or 3.
 #if CELL_BASE == 3
 
@@ -8,8 +8,8 @@ int cell_side(int shift) {
     return ((shift & 1) != 0 ? 3 : 1) * ((shift & 2) != 0 ? 9 : 1) * ((shift & 4) != 0 ? 81 : 1) *
            ((shift & 8) != 0 ? 6561 : 1) * ((shift & 16) != 0 ? 43046721 : 1);
 }
-// Number of the cell of that size that a voxel is in, along each axis; for -1 too. Integer quotients are slow on most
-// drivers, so a float proposes one that is off by at most one, and its remainder corrects it.
+// Number of the cell of that size that a voxel is in, along each axis; for -1 too. Integer quotients are slow
+// on most drivers, so a float proposes one that is off by at most one, and its remainder corrects it.
 ivec3 cell_of(ivec3 voxel, int shift) {
     const int side = cell_side(shift);
     const ivec3 near = ivec3(vec3(voxel) * (1.0 / float(side)));

@@ -9,7 +9,8 @@ struct Place {
     int tile_shift;   // log2 of the tile's side
     int mip;          // of the brick: the one that is shown, or the finer of the two that are blended
 #if PROGRESSIVE
-    int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in
+    // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in.
+    int brick_shift;
 #endif
 #if HAS_CONSTANT
     uint entry;       // of the node that is constant, where one is
@@ -93,8 +94,9 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 }
 #endif
 
-// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far the whole
-// tile is away, or the mip's cell around the voxel: whatever way the ray came and wherever it started, it sees the same.
+// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far
+// the whole tile is away, or the mip's cell around the voxel: whatever way the ray came and wherever it
+// started, it sees the same.
 bool shows(Ray ray, int tile_shift) {
 #if BLENDED
     return sees_mip(ray, tile_shift - M_SHIFT, 0);
@@ -163,7 +165,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #else
     place.tile_shift = resume(ray, entry, node);
 #if BLENDED
-    // Around this voxel the ray may see a tile itself whose children it saw elsewhere: this one, or one above it.
+    // Around this voxel the ray may see a tile itself whose children it saw elsewhere: this one, or one above
+    // it.
     if (place.tile_shift < ROOT_SHIFT && shows(ray, place.tile_shift)) {
         forget_trail();
         place.tile_shift = resume(ray, entry, node);
@@ -173,7 +176,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     place.brick_shift = place.tile_shift;
 #endif
 #endif
-    // Nothing in the whole scene. (Further down, a tile may show something itself where none of its children does.)
+    // Nothing in the whole scene. (Further down, a tile may show something itself where none of its children
+    // does.)
     if (MAX_LEVEL > 0 && place.tile_shift == ROOT_SHIFT && has_no_child(node)) return DESCENT_EMPTY;
 #if PROGRESSIVE
     Ancestor ancestor = ancestor_of(uvec4(0u), 0u, ROOT_SHIFT);

@@ -1,5 +1,5 @@
-// Which pixel's primary ray a thread takes, and where it begins and ends: in the first pass of all pixels of the blocks
-// that may see anything, later of the pixels whose rays wait.
+// Which pixel's primary ray a thread takes, and where it begins and ends: in the first pass of all pixels of
+// the blocks that may see anything, later of the pixels whose rays wait.
 #include "interop/march.h"
 #if WITH_PROXY
 #include "mesh/proxy_span.glsl"
@@ -48,8 +48,8 @@ bool find_pixel(out Launch launch) {
 }
 
 Ray launched_ray(Launch launch, PixelRay seen) {
-    Ray ray = make_ray(seen.origin, seen.direction, launch.start.far - seen.skipped, view.pixel_cone * seen.skipped,
-                       view.pixel_cone);
+    Ray ray = make_ray(seen.origin, seen.direction, launch.start.far - seen.skipped,
+                       view.pixel_cone * seen.skipped, view.pixel_cone);
 #if WINDOWS
     ray.from_eye = true;
 #endif

@@ -1,5 +1,6 @@
-// The picture of the band: a word per pixel. It is a colour (RGBA8); or, where the light is shown (SHOW_LIGHT), the bits of
-// a float; or, until a pixel that has a mesh is written, the light that reaches its voxels.
+// The picture of the band: a word per pixel. It is a colour (RGBA8); or, where the light is shown
+// (SHOW_LIGHT), the bits of a float; or, until a pixel that has a mesh is written, the light that reaches its
+// voxels.
 #include "interop/march.h"
 
 layout(std430, binding = SSBO_PICTURE) buffer PictureBlock { uint picture[]; };
@@ -10,7 +11,8 @@ ivec2 pixel_at(uint index) { return ivec2(int(index) % view.width, int(index) / 
 // Linear to sRGB (IEC 61966-2-1).
 vec3 srgb_from_linear(vec3 c) {
     const vec3 clamped = clamp(c, 0.0, 1.0);
-    return mix(12.92 * clamped, 1.055 * pow(clamped, vec3(1.0 / 2.4)) - 0.055, greaterThan(clamped, vec3(0.0031308)));
+    return mix(12.92 * clamped, 1.055 * pow(clamped, vec3(1.0 / 2.4)) - 0.055,
+               greaterThan(clamped, vec3(0.0031308)));
 }
 
 void store_color(uint index, vec3 color, float alpha) {

@@ -1,4 +1,5 @@
-// Where a pixel's ray starts and goes; distances along it count from `origin`, which is `skipped` from the eye.
+// Where a pixel's ray starts and goes; distances along it count from `origin`, which is `skipped` from the
+// eye.
 // Needs the define WINDOWS, and MarchView `view`.
 struct PixelRay {
     vec3 origin;
@@ -15,7 +16,8 @@ vec3 eye_there() { return view.eye; }
 
 // `pixel` in the band.
 PixelRay pixel_ray(ivec2 pixel) {
-    const vec2 place = (vec2(pixel + ivec2(0, view.first_row)) + 0.5) / vec2(view.width, view.height) * 2.0 - 1.0;
+    const vec2 size = vec2(view.width, view.height);
+    const vec2 place = (vec2(pixel + ivec2(0, view.first_row)) + 0.5) / size * 2.0 - 1.0;
     const vec3 across = place.x * view.right - place.y * view.up;
     const float slant = length(view.forward + across);
     PixelRay ray;

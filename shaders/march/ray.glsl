@@ -57,8 +57,9 @@ bool enter_root(inout Ray ray) {
     return true;
 }
 
-// After a start inside the marched cube: rounding must not have carried the voxel over a plane that the ray, by what
-// step_over() computes, has still before it. So a ray that starts late takes the way of one that started early.
+// After a start inside the marched cube: rounding must not have carried the voxel over a plane that the ray,
+// by what step_over() computes, has still before it. So a ray that starts late takes the way of one that
+// started early.
 void stay_behind_planes(inout Ray ray) {
     const bvec3 forward = equal(ray.positive, ivec3(1));
     const vec3 bound = vec3(mix(ray.voxel + 1, ray.voxel, forward));

@@ -17,13 +17,16 @@ bool note_heaviest(inout RayState state, float weight, float depth) {
 }
 
 #if WINDOWS
-// 17 bits a coordinate, then 6 for the ray's window and 6 for the seen voxel's. The last bit says whether it has started.
+// 17 bits a coordinate, then 6 for the ray's window and 6 for the seen voxel's. The last bit says whether it
+// has started.
 uvec2 pack_place(ivec3 v, int window) {
     const uvec3 u = uvec3(v);
     return uvec2(u.x | u.y << 17, u.y >> 15 | u.z << 2 | uint(window) << 19 | uint(seen_window) << 25);
 }
 
-void store_not_started(inout RayState state) { state.place = uvec2(0u, RAY_NOT_STARTED | uint(seen_window) << 25); }
+void store_not_started(inout RayState state) {
+    state.place = uvec2(0u, RAY_NOT_STARTED | uint(seen_window) << 25);
+}
 
 void store_position(inout RayState state, Ray ray) {
     state.place = pack_place(ray.voxel, ray.window);

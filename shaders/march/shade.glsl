@@ -23,8 +23,8 @@ vec3 direction_to_light(vec3 point) {
     return light.is_positional ? normalize(light.at - point) : light.at;
 }
 
-// A normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only because its
-// surface bends away in it, and is seen edge on.
+// A normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only
+// because its surface bends away in it, and is seen edge on.
 vec3 turned_to_viewer(vec3 normal, vec3 direction) {
     const float away = dot(normal, direction);
     if (away <= 0.0) return normal;
@@ -60,7 +60,8 @@ float light_at(vec3 point, vec3 normal, float visibility) {
 }
 
 float light_at_voxels(RayState state, PixelRay seen, float visibility) {
-    return light_at(seen.origin + seen.direction * state.depth, facing_normal(state, seen.direction), visibility);
+    const vec3 point = seen.origin + seen.direction * state.depth;
+    return light_at(point, facing_normal(state, seen.direction), visibility);
 }
 
 void write_pixel(ivec2 pixel, RayState state, float visibility) {
@@ -83,7 +84,8 @@ void write_pixel(ivec2 pixel, RayState state, float visibility) {
 
 vec3 mesh_point(MeshPixel mesh, PixelRay seen) { return seen.origin + seen.direction * mesh.t; }
 
-// The interpolated normal, on the side of the triangle that is seen. At a silhouette it may look away all the same.
+// The interpolated normal, on the side of the triangle that is seen. At a silhouette it may look away all the
+// same.
 vec3 mesh_normal(MeshPixel mesh, PixelRay seen) {
     const vec3 normal = dot(mesh.normal, mesh.plane) < 0.0 ? -mesh.normal : mesh.normal;
     return normalize(normal - max(dot(normal, seen.direction), 0.0) * seen.direction);
@@ -91,7 +93,8 @@ vec3 mesh_normal(MeshPixel mesh, PixelRay seen) {
 
 // Is there light to be stopped on its way to the mesh, and does anyone see it?
 bool mesh_needs_shadow_ray(MeshPixel mesh, PixelRay seen, float transmittance) {
-    if (!mesh_shadows || view.casts_shadows == 0 || !is_there(mesh) || transmittance < OPAQUE_TRANSMITTANCE) return false;
+    if (!mesh_shadows || view.casts_shadows == 0) return false;
+    if (!is_there(mesh) || transmittance < OPAQUE_TRANSMITTANCE) return false;
     // Shading looks at the interpolated normal; whether light arrives is told by the triangle.
     const vec3 normal = shows_light() ? mesh.plane : mesh_normal(mesh, seen);
     return dot(normal, direction_to_light(mesh_point(mesh, seen))) > 0.0;

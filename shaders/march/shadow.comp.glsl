@@ -1,4 +1,5 @@
-// One thread is one waiting shadow ray, or a pixel's share of them: from what a primary ray saw, to the light.
+// One thread is one waiting shadow ray, or a pixel's share of them: from what a primary ray saw, to the
+// light.
 #define RAYS_WIDEN SHADOW_CONES
 #define VISIT_TURNS 0
 #include "interop/march.h"
@@ -19,7 +20,8 @@
 layout(binding = TEXTURE_SHADOW_ENDS) uniform samplerBuffer shadow_ends;
 
 float receiver_width;  // of the rays that start there
-float own_side;        // of the voxels that the receiver is shown with; of the finer ones, when they are blended
+// Of the voxels that the receiver is shown with; of the finer ones, when they are blended.
+float own_side;
 
 #define OWN_HEIGHT 1.75  // in voxels
 
@@ -29,7 +31,8 @@ bool is_own(Ray ray, vec3 centre, float t, float side) {
     float reach = own_reach;
     float own = own_side;
 #if WINDOWS
-    const float scale = ldexp(1.0, N_SHIFT * (seen_window - ray.window));  // of the receiver's voxels in the ray's
+    // Of the receiver's voxels in the ray's.
+    const float scale = ldexp(1.0, N_SHIFT * (seen_window - ray.window));
     height *= scale;
     reach *= scale;
     own *= scale;
@@ -38,7 +41,8 @@ bool is_own(Ray ray, vec3 centre, float t, float side) {
     const vec3 from_receiver = centre - receiver;
 #endif
 #if BLENDED || RAYS_WIDEN
-    if (side > own && own_reach > 0.0) {  // what stands in, the coarser of two mips, and what a cone sees further on
+    // What stands in, the coarser of two mips, and what a cone sees further on.
+    if (side > own && own_reach > 0.0) {
         height *= side / own;
         reach = max(reach, own_reach_of(side));
     }
@@ -93,7 +97,9 @@ bool visit_constant(Ray entered, ConstantRun run) {
         const float t_in = entered.t;
         const vec3 centre = vec3(cell_low(entered.voxel, run.voxel_shift)) + 0.5 * side;
         const bool goes_on = step_over(entered, run.voxel_shift);
-        if (!is_own(entered, centre, 0.5 * (t_in + entered.t), side)) visibility = behind(visibility, coverage, 1.0);
+        if (!is_own(entered, centre, 0.5 * (t_in + entered.t), side)) {
+            visibility = behind(visibility, coverage, 1.0);
+        }
         if (!goes_on) break;
     }
     return visibility > OPAQUE_TRANSMITTANCE;
@@ -109,8 +115,8 @@ float end_of_occluders(vec3 to_light) {
     return texelFetch(shadow_ends, texel.y * SHADOW_ENDS_SIDE + texel.x).r - dot(receiver, to_light);
 }
 
-// The share of a sample that stands above the receiver's horizon. A cone is brought there as a whole: to the middle of what
-// is left of it.
+// The share of a sample that stands above the receiver's horizon. A cone is brought there as a whole: to the
+// middle of what is left of it.
 float weight_of(inout LightSample there) {
     const float rise = dot(receiver_normal, there.direction);
 #if SHADOW_CONES
@@ -180,7 +186,8 @@ void main() {
         atomicAdd(counters.paused, 1u);
         return;
     }
-    write_pixel(waiting.pixel, state, at_mesh ? light_on_voxels_before : visibility, mesh, at_mesh ? visibility : 1.0);
+    const float on_voxels = at_mesh ? light_on_voxels_before : visibility;
+    write_pixel(waiting.pixel, state, on_voxels, mesh, at_mesh ? visibility : 1.0);
 }
 #else
 void main() {

@@ -1,5 +1,5 @@
-// One pass of shadow rays that march: a thread takes up a pixel that waits, sends its rays on, and leaves it to the next
-// pass where one of them must wait again.
+// One pass of shadow rays that march: a thread takes up a pixel that waits, sends its rays on, and leaves it
+// to the next pass where one of them must wait again.
 #include "interop/march.h"
 #define GROUP_SIZE 64
 #include "common/thread.glsl"
@@ -39,8 +39,8 @@ void leave_waiting(uint index) {
 // march() counts the turns, and pauses within a ray.
 bool pauses_before_ray() { return false; }
 
-// Brings a ray from its start at distance `t_start`, or from where it stood, to the light. False when it must wait: then it
-// is stored.
+// Brings a ray from its start at distance `t_start`, or from where it stood, to the light. False when it must
+// wait: then it is stored.
 bool march_to_light(Ray ray, float t_start, bool starts) {
     bool inside = true;
     if (starts) {
@@ -62,7 +62,8 @@ bool march_to_light(Ray ray, float t_start, bool starts) {
 // Nothing, where a ray would have stopped.
 float clear_opaque(float left) { return left > OPAQUE_TRANSMITTANCE ? left : 0.0; }
 
-// Side of the voxels that a cone of this width is shown with (descend()); of the finer ones, when two mips are blended.
+// Side of the voxels that a cone of this width is shown with (descend()); of the finer ones, when two mips
+// are blended.
 float side_shown(float width) {
     int shift = ROOT_SHIFT - M_SHIFT;
     for (int level = 0; level < MAX_LEVEL && float(cell_side(shift)) > width; ++level) shift -= N_SHIFT;
@@ -73,4 +74,6 @@ float side_shown(float width) {
 }
 
 // Width of the shadow rays that start at a depth of a pixel's ray.
-float width_at(PixelRay seen, float depth) { return view.shadow_cone_scale * view.pixel_cone * (seen.skipped + depth); }
+float width_at(PixelRay seen, float depth) {
+    return view.shadow_cone_scale * view.pixel_cone * (seen.skipped + depth);
+}

@@ -1,5 +1,6 @@
-// The shadow rays of a pixel: one to the middle of the light, or with SOFT_SHADOWS some to samples of it, of which the one
-// that had to wait and those behind it go on in the next pass. Sums go from pass to pass by shadow_sums[].
+// The shadow rays of a pixel: one to the middle of the light, or with SOFT_SHADOWS some to samples of it, of
+// which the one that had to wait and those behind it go on in the next pass. Sums go from pass to pass by
+// shadow_sums[].
 //
 // The includer supplies `receiver`, where the rays start, and four functions:
 //     bool pauses_before_ray()                          has the thread done enough in this pass?

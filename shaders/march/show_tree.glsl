@@ -14,8 +14,8 @@ float level_of(Sample s) {
     return float(first_level) + float(ROOT_SHIFT - M_SHIFT - shift) / float(N_SHIFT);
 }
 
-// Is the sample near where the surface leaves its brick? A side that the surface runs along does not count: it would be
-// marked all over.
+// Is the sample near where the surface leaves its brick? A side that the surface runs along does not count:
+// it would be marked all over.
 bool near_brick_side(Sample s, vec3 normal) {
     const int last = MIP_M(s.mip) - 1;
     const vec3 across = abs(normal);

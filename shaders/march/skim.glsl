@@ -1,5 +1,5 @@
-// Through the empty cells of a brick, by its masks.
-// Which block of voxels is empty: -1 when block c is not, else log2 of an empty aligned cell's side, in blocks.
+// Through the empty cells of a brick, by its masks. Which block of voxels is empty: -1 when block c is not,
+// else log2 of an empty aligned cell's side, in blocks.
 int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 #if BLOCKS_A_SIDE == 4
     return empty_shift_4(summary, c);

@@ -1,5 +1,6 @@
 // Cells of the tree and of its bricks, and what a node says of them.
-// Needs the defines of TreeShape::defines(): N = 3 goes with M = 27 and 81, N = 2, 4 and 8 with powers of two.
+// Needs the defines of TreeShape::defines(): N = 3 goes with M = 27 and 81, N = 2, 4 and 8 with powers of
+// two.
 #include "interop/pool.h"
 #include "march/cells.glsl"
 
@@ -13,14 +14,16 @@
 #define ROOT_SHIFT (M_SHIFT + N_SHIFT * MAX_LEVEL)
 #define ROOT_SIDE cell_side(ROOT_SHIFT)
 
-// Rays go through windows of 2^3 cubes from which descents start (windows.glsl), or there is one cube, the root.
+// Rays go through windows of 2^3 cubes from which descents start (windows.glsl), or there is one cube, the
+// root.
 #if WINDOWS
 #define MARCHED_SIDE (2 * ROOT_SIDE)
 #else
 #define MARCHED_SIDE ROOT_SIDE
 #endif
 
-// A 4^3 mask, x fastest: -1 when cell c is occupied, else log2 of the side of an empty aligned cell around it.
+// A 4^3 mask, x fastest: -1 when cell c is occupied, else log2 of the side of an empty aligned cell around
+// it.
 int empty_shift_4(uvec2 mask, ivec3 c) {
     const uint word = (c.z & 2) == 0 ? mask.x : mask.y;
     if ((word >> (c.x + 4 * c.y + 16 * (c.z & 1)) & 1u) != 0u) return -1;
@@ -35,7 +38,8 @@ int empty_shift_3(uint mask, ivec3 c) { return (mask >> (c.x + 3 * c.y + 9 * c.z
 
 // --- a node, as fetched (NodeEntry) ---
 
-// Child c: -1 when it may not be empty, else the shift of the side of an empty aligned cell around it, in children.
+// Child c: -1 when it may not be empty, else the shift of the side of an empty aligned cell around it, in
+// children.
 int empty_child_shift(uvec4 node, ivec3 c) {
 #if TREE_N == 8
     // The mask has 64 bits, one for each group of 2^3 children. A child alone is told empty by its own entry.
@@ -54,7 +58,8 @@ bool has_children(uvec4 node) { return node.z != 0u; }
 uint child_entry(uvec4 node, ivec3 c) { return node.z + uint(c.x + TREE_N * (c.y + TREE_N * c.z)); }
 // Slot of its brick; -1: none.
 int brick_slot(uvec4 node) { return int(node.w & NODE_SLOT) - 1; }
-// One value is all that the tile holds at its own level, and it needs no brick; is_empty: and that value is 0.
+// One value is all that the tile holds at its own level, and it needs no brick; is_empty: and that value is
+// 0.
 bool is_constant(uvec4 node) { return (node.w & NODE_CONSTANT) != 0u; }
 bool is_empty(uvec4 node) { return (node.w & NODE_EMPTY) != 0u; }
 // Nothing finer adds to the tile: rays that ask for more take what it holds itself.

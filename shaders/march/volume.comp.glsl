@@ -40,8 +40,9 @@ float gather(vec4 optics, float world_length, Lit lit) {
     return weight;
 }
 
-// Where the pixel's shadow ray will start: at the depth behind which less than half of what is seen lies. It passes through
-// voxels evenly, so a surface is not shadowed in steps. Where more than half is let through, the voxel that weighs most.
+// Where the pixel's shadow ray will start: at the depth behind which less than half of what is seen lies. It
+// passes through voxels evenly, so a surface is not shadowed in steps. Where more than half is let through,
+// the voxel that weighs most.
 #define HALF_PASSED 2.0  // weighs more than any voxel
 void note_depth(float t_in, float t_out, float weight) {
     const float after = state.color.a;

@@ -1,5 +1,5 @@
-// One thread is one waiting shadow ray, or a pixel's share of them: from where a primary ray gathered most in a volume, to
-// the light.
+// One thread is one waiting shadow ray, or a pixel's share of them: from where a primary ray gathered most in
+// a volume, to the light.
 #define RAYS_WIDEN 0
 #define VISIT_TURNS VOLUME_STEPS
 #include "interop/march.h"

@@ -1,5 +1,6 @@
-// Where the ray through a pixel's centre meets the triangle that is drawn there. The rasterizer says which pixels a
-// triangle covers; all else comes from the ray and the triangle's plane, and nothing is interpolated.
+// Where the ray through a pixel's centre meets the triangle that is drawn there. The rasterizer says which
+// pixels a triangle covers; all else comes from the ray and the triangle's plane, and nothing is
+// interpolated.
 #include "interop/march.h"
 #include "interop/mesh.h"
 

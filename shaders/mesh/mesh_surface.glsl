@@ -1,5 +1,5 @@
-// The rasterized mesh at a pixel: x, y: base colour (linear, half floats); z: normal; w: normal of the triangle's plane,
-// turned to the viewer.
+// The rasterized mesh at a pixel: x, y: base colour (linear, half floats); z: normal; w: normal of the
+// triangle's plane, turned to the viewer.
 #include "interop/mesh.h"
 #include "voxelize/octahedral.glsl"
 
@@ -8,7 +8,8 @@ layout(binding = TEXTURE_MESH_SURFACE) uniform usampler2D mesh_surface;
 uniform int mesh_first_row;     // of the picture, in these textures
 uniform bool voxels_hidden;     // they are not shown, and cast shadows all the same
 uniform bool mesh_shadows;      // voxels cast shadows on meshes
-uniform float mesh_own_height;  // voxels whose centres are not so far over the plane are its own (in their sides)
+// Voxels whose centres are not so far over the plane are its own (in their sides).
+uniform float mesh_own_height;
 
 struct MeshPixel {
     float t;      // distance from the ray's origin; MESH_MISS = nothing there

@@ -3,6 +3,6 @@
 
 layout(std140, binding = UBO_MESH_VIEW) uniform MeshViewBlock { MeshView mesh_view; };
 
-// From the moved eye, in the marcher's units. In double, because the mesh, the eye and the world's origin may lie far
-// from one another.
+// From the moved eye, in the marcher's units. In double, because the mesh, the eye and the world's origin may
+// lie far from one another.
 dvec3 from_eye(ivec3 lattice) { return dvec3(lattice) * mesh_view.lattice_unit + mesh_view.origin; }

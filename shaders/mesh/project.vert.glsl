@@ -9,6 +9,8 @@ invariant gl_Position;
 void main() {
     const dvec3 p = from_eye(position);
     const double w = dot(mesh_view.along, p) + mesh_view.skipped;
-    // Clipping at -w <= z is clipping at w >= nearest. Nothing else is made of z: fragments know their distance.
-    gl_Position = vec4(dvec4(dot(mesh_view.across, p), dot(mesh_view.down, p), w - 2.0lf * mesh_view.nearest, w));
+    // Clipping at -w <= z is clipping at w >= nearest. Nothing else is made of z: fragments know their
+    // distance.
+    const double z = w - 2.0lf * mesh_view.nearest;
+    gl_Position = vec4(dvec4(dot(mesh_view.across, p), dot(mesh_view.down, p), z, w));
 }

@@ -42,8 +42,9 @@ void main() {
     const ivec3 place = ivec3(v % SIDE, v / SIDE % SIDE, v / (SIDE * SIDE));
     const uint neighbours = tiles[tile].neighbours;
 
-    // Any projection of an occupied voxel of the fractal along an axis is full, at any depth: a whole face is covered.
-    // One of the sponge is not, but its voxels are taken for solid at each level (Crassin et al. 2008, section 7).
+    // Any projection of an occupied voxel of the fractal along an axis is full, at any depth: a whole face is
+    // covered. One of the sponge is not, but its voxels are taken for solid at each level (Crassin et al.
+    // 2008, section 7).
     const Voxel here = voxel_at(place - 1);
     const float covered = occupied(neighbours, here) ? 1.0 : 0.0;
     const Voxel before = voxel_at(place - 2);

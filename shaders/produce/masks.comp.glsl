@@ -1,6 +1,6 @@
-// One thread is one block of voxels of a mip of a new brick: it packs their occupancy into the 64-bit mask that rays skip
-// by. One dispatch a mip, finest first: a voxel counts when a finer one in it does, which the alpha mask's samples alone
-// would not always say.
+// One thread is one block of voxels of a mip of a new brick: it packs their occupancy into the 64-bit mask
+// that rays skip by. One dispatch a mip, finest first: a voxel counts when a finer one in it does, which the
+// alpha mask's samples alone would not always say.
 #include "interop/produce.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
@@ -18,7 +18,8 @@ uniform int mip;
 bool any_finer(uint slot, ivec3 v) {
     const int blocks = MIP_BLOCKS_A_SIDE(mip - 1);
     const ivec3 c = 2 * v >> 2;
-    const uint word = slot * uint(MASK_WORDS) + uint(first_mask_of(mip - 1) + c.x + blocks * (c.y + blocks * c.z));
+    const uint word =
+        slot * uint(MASK_WORDS) + uint(first_mask_of(mip - 1) + c.x + blocks * (c.y + blocks * c.z));
     const ivec3 first = 2 * v & 3;
     const uvec2 mask = brick_masks[word];
     return ((first.z == 0 ? mask.x : mask.y) >> (first.x + 4 * first.y) & 0x00330033u) != 0u;

@@ -1,5 +1,5 @@
-// One thread is one voxel of a mip of a new brick, border included: it turns what was gathered into the pool's texels, and
-// leaves the scratch empty for the next batch.
+// One thread is one voxel of a mip of a new brick, border included: it turns what was gathered into the
+// pool's texels, and leaves the scratch empty for the next batch.
 #include "interop/produce.h"
 #include "produce/scratch.glsl"
 #include "produce/two_normals.glsl"
@@ -16,8 +16,8 @@ layout(rgb10_a2, binding = IMAGE_BRICK_NORMAL) writeonly uniform image3D brick_n
 
 uniform uint tile_count;
 
-// The share of the voxel's face that the surface covers, seen along the axis where it covers most: what a ray through
-// the voxel meets. A sheet covers all of it, however thin; a wire, as much as it is wide.
+// The share of the voxel's face that the surface covers, seen along the axis where it covers most: what a ray
+// through the voxel meets. A sheet covers all of it, however thin; a wire, as much as it is wide.
 float coverage(uvec2 mask) {
     const uint along_z = (mask.x | mask.x >> 16 | mask.y | mask.y >> 16) & 0xFFFFu;
     uvec2 y = mask | mask >> 4;

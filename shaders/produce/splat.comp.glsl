@@ -1,5 +1,6 @@
 // One thread is one pair: a triangle, and some rows of a mip of a tile that it may touch. It finds the brick
-// voxels that the triangle meets, exactly as the voxelizer does, marks their finer voxels and adds its attributes.
+// voxels that the triangle meets, exactly as the voxelizer does, marks their finer voxels and adds its
+// attributes.
 #include "interop/produce.h"
 #include "interop/surface.h"
 #include "produce/scratch.glsl"
@@ -64,9 +65,9 @@ SurfacePoint point_under(Patch s, vec3 lattice) {
     return SurfacePoint(s.vertices, vec3(1.0 - w.x - w.y, w));
 }
 
-// The marks of the triangle in the 4^3 finer voxels of voxel `v`. A finer row in doubt takes what it may hold: coverage is
-// an estimate, and whether the voxel is occupied at all has been decided exactly. Of an alpha-masked triangle count the
-// finer voxels under whose centres it is not cut away.
+// The marks of the triangle in the 4^3 finer voxels of voxel `v`. A finer row in doubt takes what it may
+// hold: coverage is an estimate, and whether the voxel is occupied at all has been decided exactly. Of an
+// alpha-masked triangle count the finer voxels under whose centres it is not cut away.
 uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v) {
     uvec2 mask = uvec2(0u);
     for (int i = 0; i < 16; ++i) {
@@ -162,8 +163,8 @@ void main() {
     const ivec3 low = max(coarse.low, region_low + ivec3(0, first_row));
     const ivec3 high = min(coarse.high, region_low + ivec3(MIP_SIDE(mip) - 1, first_row + row_count - 1));
     if (any(greaterThan(low, high))) return;
-    // One loop over rows and voxels alike: threads that run side by side wait for the longest, not for the product of
-    // the longest of each nested loop.
+    // One loop over rows and voxels alike: threads that run side by side wait for the longest, not for the
+    // product of the longest of each nested loop.
     ivec3 v = ivec3(0, low.y - 1, low.z);
     int last = -1;
     for (;;) {

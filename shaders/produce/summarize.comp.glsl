@@ -1,5 +1,5 @@
-// One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With TELL_EMPTY,
-// where the oracle is not exact, it also tells whether there is anything in the tile at all.
+// One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With
+// TELL_EMPTY, where the oracle is not exact, it also tells whether there is anything in the tile at all.
 #include "interop/produce.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"

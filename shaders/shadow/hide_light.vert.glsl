@@ -1,4 +1,5 @@
-// The penumbra extents, as quads on the soft shadow map: one instance a micro-patch, four vertices of a strip.
+// The penumbra extents, as quads on the soft shadow map: one instance a micro-patch, four vertices of a
+// strip.
 #include "interop/shadow_map.h"
 #include "shadow/window.glsl"
 

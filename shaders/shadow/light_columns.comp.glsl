@@ -1,5 +1,6 @@
-// One thread is one pixel of a rasterized mesh: rays from there to samples of the light, through the xy-reduced pyramid
-// (Forest et al. 2009, section 3.1). What many rays leave undone goes on in the next pass, between two rays.
+// One thread is one pixel of a rasterized mesh: rays from there to samples of the light, through the
+// xy-reduced pyramid (Forest et al. 2009, section 3.1). What many rays leave undone goes on in the next pass,
+// between two rays.
 #include "interop/columns.h"
 #include "interop/march.h"
 
@@ -19,7 +20,9 @@ uniform bool first_pass;
 
 #define ALL_RAYS 0xFFFFFFFFu  // ShadowSum.ray: the pixel is done
 
-bool visit_voxel(ivec3 voxel, float t) { return is_own(vec3(voxel) + 0.5 - receiver, t, own_height, own_reach); }
+bool visit_voxel(ivec3 voxel, float t) {
+    return is_own(vec3(voxel) + 0.5 - receiver, t, own_height, own_reach);
+}
 
 // Between two rays a pixel may pause; a ray alone takes few turns.
 bool pauses_before_ray() {

@@ -1,5 +1,5 @@
-// What an occupied voxel gathers: sums of whole numbers in 64 bits, so that the order of threads does not show. Two words
-// each, low word first; negative ones in two's complement.
+// What an occupied voxel gathers: sums of whole numbers in 64 bits, so that the order of threads does not
+// show. Two words each, low word first; negative ones in two's complement.
 #include "interop/voxelize.h"
 
 #define SUM_WEIGHT 0  // area, 1 = a face of the voxel

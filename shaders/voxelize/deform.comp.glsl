@@ -1,7 +1,8 @@
-// One thread is one vertex of a surface that moves: morph targets, skin, the node's place, and the lattice, as
-// scenes/deform.cpp, scenes/transform.h and Grid::lattice_from_world do, operation by operation, so that positions have the
-// same bits. `precise` keeps the driver from fusing and from changing the order. Sums and products of doubles are the only
-// ones in need: drivers round those alike. Normals take quotients and roots too, and may differ in the last step.
+// One thread is one vertex of a surface that moves: morph targets, skin, the node's place, and the lattice,
+// as scenes/deform.cpp, scenes/transform.h and Grid::lattice_from_world do, operation by operation, so that
+// positions have the same bits. `precise` keeps the driver from fusing and from changing the order. Sums and
+// products of doubles are the only ones in need: drivers round those alike. Normals take quotients and roots
+// too, and may differ in the last step.
 #include "interop/deform.h"
 #include "interop/grid.h"
 #include "interop/surface.h"
@@ -82,8 +83,8 @@ vec3 morphed_position(DeformItem item, uint vertex, vec3 rest) {
     return position;
 }
 
-// Positions that their buffer cannot hold are moved to just past what it can: a triangle of such vertices still misses the
-// root cube on the same side, and find_far.comp.glsl sees which do not miss it.
+// Positions that their buffer cannot hold are moved to just past what it can: a triangle of such vertices
+// still misses the root cube on the same side, and find_far.comp.glsl sees which do not miss it.
 ivec3 lattice_position(dvec3 world) {
     const dvec3 origin = dvec3(header.origin[0], header.origin[1], header.origin[2]);
     precise dvec3 units = (world - origin) * header.scale;

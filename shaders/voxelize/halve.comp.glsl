@@ -1,6 +1,7 @@
-// One thread is two words of the coarser level, side by side: each voxel the OR of 2 x 2 x 2 of the finer one, or of 2 x
-// 2 x 1 where all slices are kept (Forest et al. 2009, section 2.3, Figure 4). It reads through a buffer texture, four
-// words at a time where rows allow it: software drivers load from storage buffers lane by lane.
+// One thread is two words of the coarser level, side by side: each voxel the OR of 2 x 2 x 2 of the finer
+// one, or of 2 x 2 x 1 where all slices are kept (Forest et al. 2009, section 2.3, Figure 4). It reads
+// through a buffer texture, four words at a time where rows allow it: software drivers load from storage
+// buffers lane by lane.
 #include "interop/voxelize.h"
 
 #define GROUP_SIZE VOXEL_GROUP

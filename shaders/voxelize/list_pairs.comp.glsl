@@ -1,7 +1,9 @@
-// Lists which triangles touch which occupied voxels of a part: those whose ranks lie in `part`. A row in doubt is listed as
-// far as the triangle may touch: gather_attributes finds that nothing of it lies in the other voxels.
+// Lists which triangles touch which occupied voxels of a part: those whose ranks lie in `part`. A row in
+// doubt is listed as far as the triangle may touch: gather_attributes finds that nothing of it lies in the
+// other voxels.
 // LARGE=0: a thread is one triangle; one with a large box it leaves in the queue.
-// LARGE=1: a thread is one slice of one queued triangle, of slice_count; it lists every slice_count-th row of row_range.
+// LARGE=1: a thread is one slice of one queued triangle, of slice_count; it lists every slice_count-th row of
+// row_range.
 #include "interop/voxelize.h"
 #include "voxelize/attribute_pairs.glsl"
 #define ANY_VOXEL_SIDE 0

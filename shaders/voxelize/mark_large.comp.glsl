@@ -1,5 +1,5 @@
-// Threads share a queued triangle: threads_a_triangle of them share its steps (row_steps.glsl), and, where there are more
-// threads than steps, the rows of a step.
+// Threads share a queued triangle: threads_a_triangle of them share its steps (row_steps.glsl), and, where
+// there are more threads than steps, the rows of a step.
 #include "interop/voxelize.h"
 #include "voxelize/bits.glsl"
 #define ANY_VOXEL_SIDE 0
@@ -17,8 +17,8 @@ uniform uint first;               // place in the queue
 uniform uint count;               // of triangles
 uniform uint threads_a_triangle;  // a multiple or a part of a workgroup's
 
-// Rows that the filter leaves in doubt are decided some at a time: lanes run in lockstep, and doubles for one would cost
-// all of them dearly at every turn.
+// Rows that the filter leaves in doubt are decided some at a time: lanes run in lockstep, and doubles for one
+// would cost all of them dearly at every turn.
 #define DOUBT_CAPACITY 64
 ivec2 doubts[DOUBT_CAPACITY];
 

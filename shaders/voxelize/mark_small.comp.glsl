@@ -1,6 +1,7 @@
-// One thread is one triangle: it marks those of few rows, and leaves the others to mark_large, and those that a mask cuts
-// to list_masked. Rows in doubt are not decided here: lanes run in lockstep, and doubles for one would cost all of them
-// dearly. A triangle with such a row is marked anew by EXACT=1, whose threads take it from the queue.
+// One thread is one triangle: it marks those of few rows, and leaves the others to mark_large, and those that
+// a mask cuts to list_masked. Rows in doubt are not decided here: lanes run in lockstep, and doubles for one
+// would cost all of them dearly. A triangle with such a row is marked anew by EXACT=1, whose threads take it
+// from the queue.
 #include "interop/surface.h"
 #include "interop/voxelize.h"
 #include "voxelize/bits.glsl"
@@ -69,14 +70,16 @@ void main() {
     const ivec3 high = high_in_region(t);
     const ivec3 size = high - low + 1;
 #if !EXACT
-    if (any(lessThan(size, ivec3(1))) || enqueue_if_not_small(t, triangle, surface_triangles[triangle].material, size)) return;
+    if (any(lessThan(size, ivec3(1)))) return;
+    if (enqueue_if_not_small(t, triangle, surface_triangles[triangle].material, size)) return;
 #endif
 #if EXACT
     for (int z = low.z; z <= high.z; ++z) {
         for (int y = low.y; y <= high.y; ++y) mark_span(ivec2(y, z), exact_row_span(t, ivec2(y, z)));
     }
 #else
-    // One loop over all rows, not one a slice: lanes run in lockstep, and a slice's longest row count would be everyone's.
+    // One loop over all rows, not one a slice: lanes run in lockstep, and a slice's longest row count would
+    // be everyone's.
     bool any_doubt = false;
     int z = low.z;
     RowSlice slice = row_slice(t, z);

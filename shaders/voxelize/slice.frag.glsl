@@ -1,5 +1,5 @@
-// Sets the bits of the slices that a primitive meets in a column of voxels (Forest et al. 2009, section 2.2): the logic
-// operation OR gathers them in the targets, of RASTER_TARGET_SLICES slices each.
+// Sets the bits of the slices that a primitive meets in a column of voxels (Forest et al. 2009, section 2.2):
+// the logic operation OR gathers them in the targets, of RASTER_TARGET_SLICES slices each.
 #define VARYING in
 #include "interop/surface.h"
 #include "interop/voxelize.h"
@@ -18,7 +18,8 @@ uniform float slack;  // voxels: more than the rounding of a plane or a side ins
 uniform uint kind;    // of the list
 
 #if COVER
-// Whether the pixel (its centre, where half_pixel is 0) touches the primitive, as far as this direction can tell.
+// Whether the pixel (its centre, where half_pixel is 0) touches the primitive, as far as this direction can
+// tell.
 bool touches(vec2 place) {
     const vec3 p = vec3(place, 1.0);
     const float nearest = min(min(dot(slice_side_a, p), dot(slice_side_b, p)), dot(slice_side_c, p));
@@ -91,6 +92,7 @@ void main() {
 #if MASKED
     if (!is_shown(place)) range = ivec2(0, -1);
 #endif
-    // Nothing is discarded: a word without bits changes nothing. Depths past the ends of the tile set no bit either.
+    // Nothing is discarded: a word without bits changes nothing. Depths past the ends of the tile set no bit
+    // either.
     for (int target = 0; target < TARGETS; ++target) slices[target] = slice_bits(range, target);
 }

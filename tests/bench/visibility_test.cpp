@@ -110,7 +110,8 @@ bool reaches(const interop::MarchView& view, const Box& box, const std::vector<f
     const glm::dvec3 eye(view.eye);
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
-            const glm::dvec2 place = (glm::dvec2(x, y) + 0.5) / glm::dvec2(view.width, view.height) * 2.0 - 1.0;
+            const glm::dvec2 place =
+                (glm::dvec2(x, y) + 0.5) / glm::dvec2(view.width, view.height) * 2.0 - 1.0;
             // Along the view it advances by 1 a unit.
             const glm::dvec3 ray =
                 glm::dvec3(view.forward) + place.x * glm::dvec3(view.right) - place.y * glm::dvec3(view.up);

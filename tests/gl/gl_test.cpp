@@ -236,7 +236,8 @@ TEST_F(Macros, ANameThatNobodyDefinedIsAnErrorInIf) {
               "top.comp.glsl:2: \"SHADOW_CONE\" is not defined");
     EXPECT_EQ(fault_of("#if A\n#elif A && (B > 1)  // C\n#endif\n", {{"A", "0"}}),
               "top.comp.glsl:2: \"B\" is not defined");
-    EXPECT_EQ(fault_of("#if defined(A)\n#endif\n", {{"A", "0"}}), "top.comp.glsl:1: \"defined\" is not defined");
+    EXPECT_EQ(fault_of("#if defined(A)\n#endif\n", {{"A", "0"}}),
+              "top.comp.glsl:1: \"defined\" is not defined");
     // A name counts from its definition on.
     EXPECT_EQ(fault_of("#if LATE\n#endif\n#define LATE 1\n"), "top.comp.glsl:1: \"LATE\" is not defined");
 }
@@ -255,7 +256,8 @@ TEST_F(Macros, DefinedNamesPass) {
 
 TEST_F(Macros, AFeatureIsNotTestedByIfdef) {
     EXPECT_EQ(fault_of("\n#ifdef WITH_MESHES\n#endif\n", {{"WITH_MESHES", "1"}}),
-              "top.comp.glsl:2: \"WITH_MESHES\" is tested by #ifdef: a feature is always defined, and tested by #if");
+              "top.comp.glsl:2: \"WITH_MESHES\" is tested by #ifdef: a feature is always defined, and tested "
+              "by #if");
     EXPECT_EQ(fault_of("#ifndef MIPS\n// a default\n#define MIPS 0\n#endif\n"),
               "top.comp.glsl:1: \"MIPS\" is tested by #ifndef, and guards no file");
 }
@@ -264,7 +266,9 @@ TEST_F(Macros, WhatIsForCppIsLeftOut) {
     const std::string text = resolve(
         "#ifndef GUARD_H\n#define GUARD_H\n#ifdef __cplusplus\n#include <glm/glm.hpp>\n#if NO_MACRO_OF_OURS\n"
         "static_assert(true);\n#endif\n#include \"no/such.h\"\n#endif\nfloat kept;\n#endif\n");
-    EXPECT_EQ(text, "#version 450 core\n#line 1 0\n#ifndef GUARD_H\n#define GUARD_H\n\n\n\n\n\n\n\nfloat kept;\n#endif\n");
+    EXPECT_EQ(text,
+              "#version 450 core\n#line 1 0\n#ifndef GUARD_H\n#define GUARD_H\n\n\n\n\n\n\n\nfloat "
+              "kept;\n#endif\n");
 }
 
 TEST_F(Shaders, AFamilyBuildsEachProgramOnce) {
@@ -279,9 +283,9 @@ TEST_F(Shaders, AFamilyBuildsEachProgramOnce) {
     int built = 0;
     ProgramFamily<Variant> family([&built, shaders = source()](const Variant& variant) {
         ++built;
-        return build_compute(shaders, "variant.comp.glsl",
-                             {{"DOUBLED", variant.doubled ? "1" : "0"},
-                              {"OFFSET", std::to_string(variant.offset)}});
+        return build_compute(
+            shaders, "variant.comp.glsl",
+            {{"DOUBLED", variant.doubled ? "1" : "0"}, {"OFFSET", std::to_string(variant.offset)}});
     });
     EXPECT_EQ(built, 0);
     const std::array<int, 1> start = {10};

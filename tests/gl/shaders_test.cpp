@@ -95,7 +95,8 @@ std::vector<Case> all_cases() {
     for (const auto& [name, sets] : all_variants()) {
         for (std::size_t first = 0; first < sets.size(); first += sets_per_case) {
             const std::size_t last = std::min(first + sets_per_case, sets.size());
-            cases.push_back({name, stage_of(name),
+            cases.push_back({name,
+                             stage_of(name),
                              {sets.begin() + std::ptrdiff_t(first), sets.begin() + std::ptrdiff_t(last)},
                              first / sets_per_case});
         }
@@ -160,8 +161,8 @@ TEST_P(EveryShader, CompilesOnTheDriver) {
         glGetShaderiv(handle.id(), GL_COMPILE_STATUS, &compiled);
         std::string log(10000, '\0');
         glGetShaderInfoLog(handle.id(), GLsizei(log.size()), nullptr, log.data());
-        EXPECT_EQ(compiled, GL_TRUE)
-            << shader.name << text_of(defines) << " on " << driver_name() << "\n" << log.c_str();
+        EXPECT_EQ(compiled, GL_TRUE) << shader.name << text_of(defines) << " on " << driver_name() << "\n"
+                                     << log.c_str();
     }
 }
 

@@ -2,11 +2,11 @@
 // longer trial:
 //
 //     CAIRN_FUZZ_TRIALS=100000 CAIRN_FUZZ_SEED=7 voxelizer_fuzz_test
-#include "shaders/interop/grid.h"
 #include "tests/support/fuzz.h"
 
 #include <gtest/gtest.h>
 
+#include "shaders/interop/grid.h"
 #include "tests/support/clipped_triangle.h"
 #include "tests/support/voxelizer_fixture.h"
 #include "voxelizer/surface/wide_integer.h"

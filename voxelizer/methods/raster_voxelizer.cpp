@@ -90,11 +90,11 @@ RasterVoxelizer::RasterVoxelizer(Method method, const gl::ShaderSource& shaders,
       unite_(gl::build_compute(shaders, "voxelize/unite_slices.comp.glsl", {{"ALONG_X", "0"}})),
       programs_([vertex_path = vertex_path_, shaders](const RasterVariant& variant) {
           const gl::Defines macros = defines(variant);
-          return vertex_path ? gl::build_raster(shaders, "voxelize/project.vert.glsl",
-                                                "voxelize/slice.frag.glsl", {}, macros)
-                             : gl::build_raster(shaders, "voxelize/feed.vert.glsl",
-                                                "voxelize/slice.frag.glsl", "voxelize/project.geom.glsl",
-                                                macros);
+          return vertex_path
+                     ? gl::build_raster(shaders, "voxelize/project.vert.glsl", "voxelize/slice.frag.glsl", {},
+                                        macros)
+                     : gl::build_raster(shaders, "voxelize/feed.vert.glsl", "voxelize/slice.frag.glsl",
+                                        "voxelize/project.geom.glsl", macros);
       }),
       lists_(all_list_words * sizeof(std::uint32_t), "primitives to rasterize") {
     GLuint vertex_array = 0;

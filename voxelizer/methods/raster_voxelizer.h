@@ -25,9 +25,10 @@ enum class LayerPath : std::uint8_t {
 
 /// What tells the programs that rasterize apart.
 struct RasterVariant {
-    int corners = 3;  ///< of a primitive: 3, 2 or 1
+    int corners = 3;     ///< of a primitive: 3, 2 or 1
     bool cover = false;  ///< primitives are enlarged to all pixels that they touch
-    int axes = 1;  ///< directions in which a primitive is drawn: 1 or 3; 0: the one that sees it most squarely
+    int axes =
+        1;  ///< directions in which a primitive is drawn: 1 or 3; 0: the one that sees it most squarely
     bool masked = false;  ///< alpha masks are looked at
     int targets = 1;      ///< of the slices: 1, 2, 4 or 8
     [[nodiscard]] auto operator<=>(const RasterVariant&) const = default;
@@ -90,7 +91,7 @@ private:
     bool vertex_path_;
     gl::Program list_;
     gl::Program unite_along_x_;
-    gl::Program unite_;                                                      ///< along y and z
+    gl::Program unite_;  ///< along y and z
     gl::ProgramFamily<RasterVariant> programs_;
     SliceTargets targets_;
     gl::Buffer lists_;

@@ -205,8 +205,8 @@ void append(Surface& surface, const SurfaceChunk& part) {
         for (; first < last; ++first) {
             interop::SurfaceTriangle triangle = part.triangles[first];
             // Numbered as in the part, so that a vertex's number does not depend on where the front is.
-            std::array<std::uint32_t, 3> in_order = {
-                triangle.vertices.x, triangle.vertices.y, triangle.vertices.z};
+            std::array<std::uint32_t, 3> in_order = {triangle.vertices.x, triangle.vertices.y,
+                                                     triangle.vertices.z};
             std::ranges::sort(in_order);
             for (const std::uint32_t vertex : in_order) {
                 std::int32_t& number = numbers[vertex];
