@@ -3,12 +3,16 @@
 // shadow_sums[].
 //
 // The includer supplies `receiver`, where the rays start, and four functions:
-//     bool pauses_before_ray()                          has the thread done enough in this pass?
-//     bool trace_one(LightSample there, bool starts)    one ray, from its start or on from where it stood; leaves what it
-//                                                       has of the light in `visibility`. False when it must wait.
-//     float weight_of(inout LightSample there)          share of a sample that can light the receiver at all, by how
-//                                                       the surface is turned; it may move the sample. 0: no ray is sent.
-//     float end_of_occluders(vec3 to_light)             distance behind which nothing stands before a directional light
+//     bool pauses_before_ray()
+//         has the thread done enough in this pass?
+//     bool trace_one(LightSample there, bool starts)
+//         one ray, from its start or on from where it stood; leaves what it has of the light in `visibility`.
+//         False when it must wait.
+//     float weight_of(inout LightSample there)
+//         the share of a sample that can light the receiver at all, by how the surface is turned; it may move
+//         the sample. 0: no ray is sent.
+//     float end_of_occluders(vec3 to_light)
+//         the distance behind which nothing stands before a directional light
 // Needs the defines SOFT_SHADOWS and SHADOW_CONES, and shade.glsl.
 #include "interop/shadow_rays.h"
 
@@ -45,14 +49,14 @@ void store_sum(uint index, uint ray, float visible) { shadow_sums[index] = Shado
 
 // How much of the light reaches the receiver, in `visibility`. False when a ray must wait.
 bool find_light(ivec2 pixel, uint index, bool starts) {
-    const uint ray_count = uint(min(view.shadow_rays, MAX_SHADOW_RAYS));
+    const uint sample_count = uint(min(view.shadow_rays, MAX_SHADOW_RAYS));
     uint first = 0u;
     float sum = 0.0;
     if (!starts) {
         first = shadow_sums[index].ray;
         sum = shadow_sums[index].visible;
     }
-    for (uint i = first; i < ray_count; ++i) {
+    for (uint i = first; i < sample_count; ++i) {
         if (pauses_before_ray()) {
             store_sum(index, i, sum);
             return false;
@@ -71,7 +75,7 @@ bool find_light(ivec2 pixel, uint index, bool starts) {
         }
         sum += weight * visibility;
     }
-    visibility = sum / float(ray_count);
+    visibility = sum / float(sample_count);
     return true;
 }
 #else
