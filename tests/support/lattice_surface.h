@@ -48,7 +48,7 @@ inline voxelizer::Surface lattice_surface(const std::vector<LatticeTriangle>& tr
         const auto first = std::uint32_t(chunk.positions.size());
         for (const glm::i64vec3& p : triangle)
             chunk.positions.push_back({int(p.x), int(p.y), int(p.z)});
-        chunk.triangles.push_back({{first, first + 1, first + 2, 0}});
+        chunk.triangles.push_back({{first, first + 1, first + 2}, 0});
     }
     return surface;
 }
