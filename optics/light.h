@@ -41,4 +41,24 @@ struct Light {
     return glm::normalize(light.positional ? light.position - point : light.towards);
 }
 
+/// A rectangle at `position` that faces `target`: along cross(half_u, half_v), with two edges level where
+/// `up` is vertical. All else is as in Light.
+///
+/// @param width   from edge to edge along half_u, world units; `height` along half_v.
+/// @throws Error  Fault::usage when a size is not positive, or the target is the position.
+[[nodiscard]] Light aimed_light(const glm::dvec3& position, const glm::dvec3& target, double width,
+                                double height, const glm::dvec3& up = {0.0, 1.0, 0.0});
+
+/// Light space of a rectangle: its middle is the origin, half_u lies along +x, half_v along +y, and what
+/// cross(half_u, half_v) points to has a positive z. World units.
+///
+/// @throws Error  Fault::usage for a light that is no rectangle, or when a half axis has no length, or they
+///                are not at a right angle.
+[[nodiscard]] glm::dmat4 light_from_world(const Light& light);
+
+/// Half the width and the height of a rectangle, world units.
+///
+/// @throws Error  Fault::usage for a light that is no rectangle.
+[[nodiscard]] glm::dvec2 half_size(const Light& light);
+
 }  // namespace cairn::optics

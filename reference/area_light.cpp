@@ -17,6 +17,7 @@ constexpr int strata = 8;  // an axis
 constexpr int round_samples = strata * strata;
 constexpr int least_rounds = 4;  // a spread of fewer says little
 constexpr int most_exact_strata = 256;
+constexpr double far_away = 1e5;  // diagonals of the scene
 
 /// SplitMix64 (Steele, Lea, Flood 2014): a stream for each point, whatever thread it runs on.
 class Random {
@@ -46,15 +47,27 @@ glm::dvec2 on_disk(double x, double y) {
     return {r * std::cos(angle), r * std::sin(angle)};
 }
 
-/// Where the light meets the ray from `point` that stands for (x, y) of the unit square.
-glm::dvec3 sample_of(const AreaLight& light, const glm::dvec3& point, double x, double y) {
-    if (light.shape == AreaLight::Shape::rectangle)
-        return light.centre + (2.0 * x - 1.0) * light.half_u + (2.0 * y - 1.0) * light.half_v;
+/// A light with a place, which a directional one has far away.
+optics::Light placed(const optics::Light& light, const ImageTracer& tracer) {
+    if (light.positional) return light;
+    const double distance = far_away * tracer.diagonal();
+    optics::Light sphere = light;
+    sphere.positional = true;
+    sphere.shape = optics::LightShape::sphere;
+    sphere.position = tracer.centre() + distance * glm::normalize(light.towards);
+    sphere.radius = distance * std::sin(light.angle);
+    return sphere;
+}
+
+/// Where a light with a place meets the ray from `point` that stands for (x, y) of the unit square.
+glm::dvec3 sample_of(const optics::Light& light, const glm::dvec3& point, double x, double y) {
+    if (light.shape == optics::LightShape::rectangle)
+        return light.position + (2.0 * x - 1.0) * light.half_u + (2.0 * y - 1.0) * light.half_v;
     const glm::dvec2 disk = on_disk(x, y);
-    if (light.shape == AreaLight::Shape::disk)
-        return light.centre + disk.x * light.half_u + disk.y * light.half_v;
+    if (light.shape == optics::LightShape::disk)
+        return light.position + disk.x * light.half_u + disk.y * light.half_v;
     // The cone around the sphere: 1 - cosine grows with the square of the disk's radius.
-    const glm::dvec3 way = light.centre - point;
+    const glm::dvec3 way = light.position - point;
     const double distance = glm::length(way);
     const glm::dvec3 axis = way / distance;
     const double sine = light.radius / distance;
@@ -70,28 +83,28 @@ glm::dvec3 sample_of(const AreaLight& light, const glm::dvec3& point, double x, 
     return point + direction * (along - std::sqrt(std::max(under, 0.0)));
 }
 
-void check(std::span<const glm::dvec3> points, std::span<const glm::dvec3> normals, const AreaLight& light,
-           const AreaLightOptions& options) {
+void check_question(std::span<const glm::dvec3> points, std::span<const glm::dvec3> normals,
+                    const optics::Light& light, const AreaLightOptions& options) {
     const auto refuse = [](const char* what) { throw Error(Fault::usage, "area light", what); };
     if (!normals.empty() && normals.size() != points.size()) refuse("there must be one normal a point");
     if (!(options.standard_error > 0.0) || options.least_samples < 1 || options.most_samples < 1)
         refuse("the standard error and the counts of samples must be positive");
     if (options.exact_strata < 0 || options.exact_strata > most_exact_strata)
         refuse("there are at most 256 x 256 strata");
-    if (light.shape != AreaLight::Shape::sphere) {
+    if (light.shape != optics::LightShape::sphere) {
         if (!(glm::length(glm::cross(light.half_u, light.half_v)) > 0.0))
             refuse("its half axes span no area");
         return;
     }
-    if (!(light.radius > 0.0)) refuse("its radius is not positive");
+    if (!(light.radius > 0.0)) refuse("its radius or its angle is not positive");
     for (const glm::dvec3& point : points)
-        if (!(glm::distance(point, light.centre) > light.radius)) refuse("a point lies inside the sphere");
+        if (!(glm::distance(point, light.position) > light.radius)) refuse("a point lies inside the sphere");
 }
 
 /// One sample in each of across x across strata. The rays go together, as many at once as Embree takes.
 /// @return how many see the light
 int visible_in_strata(const ImageTracer& tracer, const glm::dvec3& point, const glm::dvec3& normal,
-                      const AreaLight& light, int across, ImageTracer::Rays rays, Random& random) {
+                      const optics::Light& light, int across, ImageTracer::Rays rays, Random& random) {
     std::array<glm::dvec3, 8> samples;
     std::size_t waiting = 0;
     int visible = 0;
@@ -112,7 +125,8 @@ int visible_in_strata(const ImageTracer& tracer, const glm::dvec3& point, const 
 }
 
 LightVisibility visibility_of(const ImageTracer& tracer, const glm::dvec3& point, const glm::dvec3& normal,
-                              const AreaLight& light, const AreaLightOptions& options, std::uint64_t stream) {
+                              const optics::Light& light, const AreaLightOptions& options,
+                              std::uint64_t stream) {
     Random random(Random(options.seed + stream).next());
     const auto visible_share = [&](int across) {
         return double(visible_in_strata(tracer, point, normal, light, across, options.rays, random)) /
@@ -144,14 +158,16 @@ LightVisibility visibility_of(const ImageTracer& tracer, const glm::dvec3& point
 std::vector<LightVisibility> area_light_visibility(const ImageTracer& tracer,
                                                    std::span<const glm::dvec3> points,
                                                    std::span<const glm::dvec3> normals,
-                                                   const AreaLight& light, const AreaLightOptions& options) {
-    check(points, normals, light, options);
+                                                   const optics::Light& light,
+                                                   const AreaLightOptions& options) {
+    const optics::Light sampled = placed(light, tracer);
+    check_question(points, normals, sampled, options);
     std::vector<LightVisibility> visibilities(points.size());
     tbb::task_arena arena(options.threads > 0 ? options.threads : int(tbb::task_arena::automatic));
     arena.execute([&] {
         tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
             const glm::dvec3 normal = normals.empty() ? glm::dvec3(0.0) : normals[i];
-            visibilities[i] = visibility_of(tracer, points[i], normal, light, options, i);
+            visibilities[i] = visibility_of(tracer, points[i], normal, sampled, options, i);
         });
     });
     return visibilities;

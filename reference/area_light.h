@@ -6,23 +6,10 @@
 
 #include <glm/glm.hpp>
 
+#include "optics/light.h"
 #include "reference/image.h"
 
 namespace cairn::reference {
-
-/// A light with an area. World units.
-struct AreaLight {
-    enum class Shape : std::uint8_t {
-        rectangle,  ///< centre +- half_u +- half_v
-        disk,       ///< the ellipse with these half axes
-        sphere,     ///< of `radius`
-    };
-    Shape shape = Shape::rectangle;
-    glm::dvec3 centre{0.0, 1.0, 0.0};
-    glm::dvec3 half_u{0.1, 0.0, 0.0};
-    glm::dvec3 half_v{0.0, 0.0, 0.1};
-    double radius = 0.1;
-};
 
 struct AreaLightOptions {
     double standard_error = 1.0 / 512;  ///< sampling of a point stops below it
@@ -43,7 +30,8 @@ struct LightVisibility {
 };
 
 /// What share of a light each point sees past the tracer's triangles, by stratified samples: uniform in the
-/// area of a rectangle or disk, and in the solid angle of a sphere.
+/// area of a rectangle or disk, and in the solid angle of a sphere. A directional light stands as a sphere
+/// 1e5 diagonals of the tracer's scene from its middle, as wide as the light's angle.
 ///
 /// Samples come in rounds of 8 x 8 strata, one jittered sample each; the spread of the rounds' means gives
 /// the standard error. An occluder that hides much less than 1 / least_samples of the light may be missed.
@@ -51,12 +39,14 @@ struct LightVisibility {
 /// @param points   world.
 /// @param normals  one a point: what lies below its tangent plane is not seen; 0 = a point that has none; or
 ///                 empty: no point has one.
-/// @throws Error  Fault::usage for a light without an area, a point inside a sphere light, sample counts or a
+/// @param light    with an extent.
+/// @throws Error  Fault::usage for a light without an extent, a point inside a sphere light, sample counts or
+/// a
 ///                standard error that are not positive, or normals of another count than points.
 [[nodiscard]] std::vector<LightVisibility> area_light_visibility(const ImageTracer& tracer,
                                                                  std::span<const glm::dvec3> points,
                                                                  std::span<const glm::dvec3> normals,
-                                                                 const AreaLight& light,
+                                                                 const optics::Light& light,
                                                                  const AreaLightOptions& options = {});
 
 }  // namespace cairn::reference

@@ -117,23 +117,23 @@ private:
 
 }  // namespace
 
-struct ImageTracer::Parts {
+struct ImageTracer::Impl {
     TracedScene scene;
 };
 
 ImageTracer::ImageTracer(const scenes::Scene& scene, const scenes::Snapshot& snapshot)
-    : parts_(new Parts{TracedScene(scene, snapshot)}) {}
+    : impl_(new Impl{TracedScene(scene, snapshot)}) {}
 ImageTracer::~ImageTracer() = default;
 
 bool ImageTracer::blocked(const glm::dvec3& from, const glm::dvec3& to) const {
     const glm::dvec3 way = to - from;
     const double length = glm::length(way);
-    const double gap = 1e-5 * parts_->scene.size;
+    const double gap = 1e-5 * impl_->scene.size;
     if (!(length > 2.0 * gap)) return false;
     RTCRay ray;
-    set_ray(ray, glm::vec3(from - parts_->scene.centre), glm::vec3(way / length), float(gap),
+    set_ray(ray, glm::vec3(from - impl_->scene.centre), glm::vec3(way / length), float(gap),
             float(length - gap));
-    occluded(parts_->scene.tree.get(), ray);
+    occluded(impl_->scene.tree.get(), ray);
     return ray.tfar < 0.0F;
 }
 
@@ -141,8 +141,8 @@ int ImageTracer::count_reached(const glm::dvec3& from, std::span<const glm::dvec
     if (kind == Rays::single)
         return int(
             std::count_if(to.begin(), to.end(), [&](const glm::dvec3& p) { return !blocked(from, p); }));
-    const double gap = 1e-5 * parts_->scene.size;
-    const glm::vec3 origin(from - parts_->scene.centre);
+    const double gap = 1e-5 * impl_->scene.size;
+    const glm::vec3 origin(from - impl_->scene.centre);
     int reached = 0;
     while (!to.empty()) {
         const std::size_t count = std::min(to.size(), std::size_t(packet_rays));
@@ -158,7 +158,7 @@ int ImageTracer::count_reached(const glm::dvec3& from, std::span<const glm::dvec
             set_ray(ray, origin, glm::vec3(way / length), float(gap), float(length - gap));
             put(rays, int(i), ray);
         }
-        occluded8(valid.data(), parts_->scene.tree.get(), rays);
+        occluded8(valid.data(), impl_->scene.tree.get(), rays);
         for (std::size_t i = 0; i < packet_rays; ++i)
             reached += valid[i] != 0 && rays.tfar[i] >= 0.0F ? 1 : 0;
         to = to.subspan(count);
@@ -167,10 +167,17 @@ int ImageTracer::count_reached(const glm::dvec3& from, std::span<const glm::dvec
 }
 
 double ImageTracer::build_milliseconds() const {
-    return parts_->scene.build_milliseconds;
+    return impl_->scene.build_milliseconds;
 }
 
-ReferenceImage ImageTracer::trace(const ReferenceCamera& camera, const ReferenceLight& light, int width,
+const glm::dvec3& ImageTracer::centre() const {
+    return impl_->scene.centre;
+}
+double ImageTracer::diagonal() const {
+    return impl_->scene.size;
+}
+
+ReferenceImage ImageTracer::trace(const optics::Camera& camera, const optics::Light& light, int width,
                                   int height, int threads, Rays kind) const {
     ReferenceImage image;
     image.width = width;
@@ -179,7 +186,7 @@ ReferenceImage ImageTracer::trace(const ReferenceCamera& camera, const Reference
     image.depth.assign(pixels, infinite);
     image.lit.assign(pixels, 0);
     image.primitive.assign(pixels, ReferenceImage::no_primitive);
-    const Work work{parts_->scene, PictureRays(camera, light, parts_->scene, {width, height}), image};
+    const Work work{impl_->scene, PictureRays(camera, light, impl_->scene, {width, height}), image};
     tbb::task_arena arena(threads > 0 ? threads : int(tbb::task_arena::automatic));
     const auto start = Clock::now();
     arena.execute([&] {
@@ -227,9 +234,9 @@ float srgb_from_linear(float c) {
 
 }  // namespace
 
-ShadedImage ImageTracer::shade(const ReferenceCamera& camera, const ReferenceLight& light,
+ShadedImage ImageTracer::shade(const optics::Camera& camera, const optics::Light& light,
                                const Shading& shading, int width, int height, int samples_a_side) const {
-    const TracedScene& scene = parts_->scene;
+    const TracedScene& scene = impl_->scene;
     const PictureRays rays(camera, light, scene, {width, height});
     ShadedImage image;
     image.width = width;

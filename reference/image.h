@@ -7,24 +7,12 @@
 
 #include <glm/glm.hpp>
 
+#include "optics/camera.h"
+#include "optics/light.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 
 namespace cairn::reference {
-
-/// Looks from `eye` to `target`; x to the right, y up.
-struct ReferenceCamera {
-    glm::dvec3 eye{0.0, 0.0, 1.0};
-    glm::dvec3 target{0.0};
-    glm::dvec3 up{0.0, 1.0, 0.0};
-    double yfov = 0.785398163397448;  ///< radians, the whole angle
-};
-
-struct ReferenceLight {
-    bool positional = false;
-    glm::dvec3 position{0.0};            ///< world, when positional
-    glm::dvec3 towards{0.4, 0.8, 0.45};  ///< direction to the light, any length, when not
-};
 
 /// Row after row, pixel (0, 0) at the top left.
 struct ReferenceImage {
@@ -73,12 +61,13 @@ public:
     /// One at a time, or in packets of 4 x 2 pixels, which find the same.
     enum class Rays : std::uint8_t { single, packets };
 
+    /// @param light    its middle.
     /// @param threads  0 = all cores.
-    [[nodiscard]] ReferenceImage trace(const ReferenceCamera& camera, const ReferenceLight& light, int width,
+    [[nodiscard]] ReferenceImage trace(const optics::Camera& camera, const optics::Light& light, int width,
                                        int height, int threads = 0, Rays kind = Rays::single) const;
 
     /// The picture with samples_a_side^2 rays a pixel, on a regular grid, each with a shadow ray.
-    [[nodiscard]] ShadedImage shade(const ReferenceCamera& camera, const ReferenceLight& light,
+    [[nodiscard]] ShadedImage shade(const optics::Camera& camera, const optics::Light& light,
                                     const Shading& shading, int width, int height, int samples_a_side) const;
 
     /// Whether a surface stands between two points of the world. Either end's own surface does not count:
@@ -88,10 +77,14 @@ public:
     [[nodiscard]] int count_reached(const glm::dvec3& from, std::span<const glm::dvec3> to, Rays kind) const;
 
     [[nodiscard]] double build_milliseconds() const;
+    /// Of the snapshot's bounds, world: the origin of a scene without any.
+    [[nodiscard]] const glm::dvec3& centre() const;
+    /// The same bounds' diagonal: 1 of a scene without any.
+    [[nodiscard]] double diagonal() const;
 
 private:
-    struct Parts;
-    std::unique_ptr<Parts> parts_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace cairn::reference

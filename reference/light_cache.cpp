@@ -16,7 +16,7 @@ namespace cairn::reference {
 namespace {
 
 /// Of the files, and of the sampling: older answers are not found again.
-constexpr std::uint64_t version = 1;
+constexpr std::uint64_t version = 2;
 
 struct FileHead {
     std::array<char, 8> magic{'C', 'A', 'I', 'R', 'N', 'L', 'V', '1'};
@@ -82,6 +82,24 @@ void add_mask(Hasher& hasher, const scenes::Scene& scene, const scenes::Primitiv
     hasher.add_list(std::span(image.rgba));
 }
 
+/// What its shape does not use does not count.
+void add_light(Hasher& hasher, const optics::Light& light) {
+    hasher.add(std::uint8_t(light.positional));
+    if (!light.positional) {
+        hasher.add_vector(light.towards);
+        hasher.add(light.angle);
+        return;
+    }
+    hasher.add(light.shape);
+    hasher.add_vector(light.position);
+    if (light.shape == optics::LightShape::sphere) {
+        hasher.add(light.radius);
+        return;
+    }
+    hasher.add_vector(light.half_u);
+    hasher.add_vector(light.half_v);
+}
+
 std::uint64_t sum_of(std::span<const Entry> entries) {
     return XXH3_64bits(entries.data(), entries.size_bytes());
 }
@@ -98,22 +116,16 @@ LightHash hash_of(const LightQuestion& question) {
         hasher.add_list(std::span(item.primitive->indices));
         add_mask(hasher, question.scene, *item.primitive);
     }
-    // Rays begin and end at a share of the bounds' diagonal.
+    // Rays begin and end at a share of the bounds' diagonal, and directional lights stand as far from it.
     hasher.add_vector(question.snapshot.bounds.low);
     hasher.add_vector(question.snapshot.bounds.high);
     hasher.add_list(question.points);
     hasher.add_list(question.normals);
-    hasher.add(question.light.shape);
-    for (const glm::dvec3& vector : {question.light.centre, question.light.half_u, question.light.half_v})
-        hasher.add_vector(vector);
-    hasher.add(question.light.radius);
+    add_light(hasher, question.light);
     hasher.add(question.options.standard_error);
     hasher.add(question.options.least_samples);
     hasher.add(question.options.most_samples);
     hasher.add(question.options.seed);
-    // What came later leaves the hashes of older answers alone.
-    if (question.options.exact_strata == 0 && question.options.rays == ImageTracer::Rays::single)
-        return hasher.result();
     hasher.add(question.options.exact_strata);
     hasher.add(question.options.rays);
     return hasher.result();

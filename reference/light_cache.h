@@ -22,7 +22,7 @@ struct LightQuestion {
     const scenes::Snapshot& snapshot;
     std::span<const glm::dvec3> points;
     std::span<const glm::dvec3> normals;
-    const AreaLight& light;
+    const optics::Light& light;
     const AreaLightOptions& options;
 };
 using LightHash = std::array<std::uint64_t, 2>;

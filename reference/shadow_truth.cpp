@@ -6,7 +6,6 @@
 
 #include "reference/light_cache.h"
 #include "reference/traced_scene.h"
-#include "reference/view.h"
 #include "scenes/transform.h"
 
 namespace cairn::reference {
@@ -65,8 +64,7 @@ double ratio(double sum, std::size_t count) {
 
 ShadowReceivers shadow_receivers(const ImageTracer& tracer, const ShadowQuestion& question) {
     ShadowReceivers found;
-    found.seen =
-        tracer.trace(camera_of(question.camera), light_of(question.light), question.width, question.height);
+    found.seen = tracer.trace(question.camera, question.light, question.width, question.height);
     const Faces faces = faces_of(question.snapshot);
     const PixelRays rays(question.camera, question.width, question.height);
     for (std::size_t i = 0; i < found.seen.depth.size(); ++i) {
@@ -103,19 +101,18 @@ std::vector<float> hard_shares(const ShadowReceivers& receivers) {
 SoftShares soft_shares(const ImageTracer& tracer, const ShadowQuestion& question,
                        const ShadowReceivers& receivers, const AreaLightOptions& options,
                        const std::optional<std::filesystem::path>& cache) {
-    const AreaLight light = area_light_of(question.light, question.snapshot.bounds);
     std::optional<LightCache> kept;
     std::optional<std::vector<LightVisibility>> found;
     if (cache) {
         kept.emplace(*cache, hash_of({question.scene, question.snapshot, receivers.points, receivers.normals,
-                                      light, options}));
+                                      question.light, options}));
         found = kept->load(receivers.points.size());
     }
     SoftShares result;
     result.cached = found.has_value();
     if (!found) {
         const auto start = std::chrono::steady_clock::now();
-        found = area_light_visibility(tracer, receivers.points, receivers.normals, light, options);
+        found = area_light_visibility(tracer, receivers.points, receivers.normals, question.light, options);
         result.milliseconds =
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         if (kept) kept->save(*found);

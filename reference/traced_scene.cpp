@@ -174,7 +174,7 @@ void set_ray(RTCRay& ray, const glm::vec3& origin, const glm::vec3& direction, f
     ray.flags = 0;
 }
 
-PictureRays::PictureRays(const ReferenceCamera& camera, const ReferenceLight& light, const TracedScene& scene,
+PictureRays::PictureRays(const optics::Camera& camera, const optics::Light& light, const TracedScene& scene,
                          glm::ivec2 size)
     : light_(light),
       size_(size),

@@ -63,7 +63,7 @@ void set_ray(RTCRay& ray, const glm::vec3& origin, const glm::vec3& direction, f
 /// middle.
 class PictureRays {
 public:
-    PictureRays(const ReferenceCamera& camera, const ReferenceLight& light, const TracedScene& scene,
+    PictureRays(const optics::Camera& camera, const optics::Light& light, const TracedScene& scene,
                 glm::ivec2 size);
 
     /// Unit. @param place  in pixels from the top left corner; centres lie at halves.
@@ -75,7 +75,7 @@ public:
     [[nodiscard]] glm::dvec3 towards_light(const glm::dvec3& point) const;
 
 private:
-    const ReferenceLight& light_;
+    const optics::Light& light_;
     glm::ivec2 size_;
     glm::dvec3 eye_, centre_, forward_, right_, up_;
     float gap_;  ///< shadow rays start so far from the surface, not to meet it again

@@ -14,7 +14,7 @@ namespace cairn::renderer {
 namespace {
 
 /// The near plane as far as the scene allows: depth is finest there.
-glm::dmat4 clip_from_world(const SoftShadowView& view, const scenes::Bounds& bounds) {
+glm::dmat4 clip_from_world(const View& view, const scenes::Bounds& bounds) {
     const glm::dmat4 camera = glm::lookAt(view.camera.eye, view.camera.target, view.camera.up);
     double nearest = 1e300;
     double furthest = 0.0;
@@ -32,7 +32,7 @@ glm::dmat4 clip_from_world(const SoftShadowView& view, const scenes::Bounds& bou
     return glm::perspective(view.camera.yfov, double(view.width) / view.height, nearest, furthest) * camera;
 }
 
-void check(const SoftShadowView& view) {
+void check(const View& view) {
     if (view.width >= 1 && view.height >= 1 && view.width <= 16384 && view.height <= 16384) return;
     throw Error(Fault::usage, "soft shadow", fmt::format("a picture of {}x{}", view.width, view.height),
                 "choose 1 to 16384 pixels a side");
@@ -80,19 +80,19 @@ SoftShadowRenderer::SoftShadowRenderer(SoftShadowRenderer&&) noexcept = default;
 SoftShadowRenderer& SoftShadowRenderer::operator=(SoftShadowRenderer&&) noexcept = default;
 SoftShadowRenderer::~SoftShadowRenderer() = default;
 
-SoftShadowPicture SoftShadowRenderer::render(const SoftShadowView& view) {
+SoftShadowPicture SoftShadowRenderer::render(const View& view, const std::optional<ShadowFrustum>& frustum) {
     check(view);
     Parts& parts = *parts_;
-    const ShadowFrustum frustum =
-        view.frustum ? *view.frustum : fit_shadow_frustum(view.light, parts.occluders, parts.receivers);
-    parts.map.compute(view.light, frustum, parts.occluder_mesh, parts.receiver_mesh);
+    parts.map.compute(view.light,
+                      frustum ? *frustum : fit_shadow_frustum(view.light, parts.occluders, parts.receivers),
+                      parts.occluder_mesh, parts.receiver_mesh);
     ProjectedPixels pixels = parts.projection.draw({.width = view.width,
                                                     .height = view.height,
                                                     .eye = view.camera.eye,
                                                     .clip_from_world = clip_from_world(view, parts.bounds),
                                                     .background = view.background,
-                                                    .light_color = view.light_color,
-                                                    .ambient = view.ambient},
+                                                    .light_color = view.light.color,
+                                                    .ambient = view.light.ambient},
                                                    parts.map, parts.occluder_mesh, parts.receiver_mesh);
     return {{view.width, view.height, std::move(pixels.rgba)},
             std::move(pixels.visible),

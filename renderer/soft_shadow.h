@@ -14,17 +14,6 @@
 
 namespace cairn::renderer {
 
-struct SoftShadowView {
-    int width = 512;  ///< pixels, [1, 16384]
-    int height = 512;
-    optics::Camera camera;
-    RectangleLight light;
-    std::optional<ShadowFrustum> frustum;  ///< none: fit_shadow_frustum
-    glm::vec3 light_color{1.0F};           ///< linear
-    float ambient = 0.25F;                 ///< light from everywhere, as a share of the light's own
-    glm::vec3 background{0.80F, 0.84F, 0.90F};
-};
-
 /// A picture, and what its shadow was made of, pixel by pixel.
 struct SoftShadowPicture {
     optics::Image image;
@@ -49,8 +38,11 @@ public:
     SoftShadowRenderer& operator=(const SoftShadowRenderer&) = delete;
     ~SoftShadowRenderer();
 
+    /// @param view     its light is a rectangle. Its voxels and its shadow rays do not count.
+    /// @param frustum  none: fit_shadow_frustum.
     /// @throws Error  Fault::usage for a size, a light or a frustum that is none.
-    [[nodiscard]] SoftShadowPicture render(const SoftShadowView& view);
+    [[nodiscard]] SoftShadowPicture render(const View& view,
+                                           const std::optional<ShadowFrustum>& frustum = std::nullopt);
 
     [[nodiscard]] const SoftShadowMap& map() const;  ///< of the last render()
 

@@ -25,20 +25,23 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-gl::ContextKind context_named(const std::string& name) {
-    if (name == "auto") return gl::ContextKind::automatic;
-    if (name == "osmesa") return gl::ContextKind::osmesa;
-    if (name == "egl") return gl::ContextKind::egl;
-    throw Error(Fault::usage, "--context", fmt::format("there is no \"{}\"", name),
-                "choose auto, osmesa or egl");
+Names<gl::ContextKind> context_names() {
+    using gl::ContextKind;
+    return {{"auto", ContextKind::automatic}, {"osmesa", ContextKind::osmesa}, {"egl", ContextKind::egl}};
 }
 
-scenes::Bounds bounds_of(const std::string& text) {
-    const std::vector<double> n = parse_numbers("--bounds", text, 6, 6);
+OptionTable<DriverOptions> context_table() {
+    return {named_row<DriverOptions>(
+        "--context", "where OpenGL comes from (default: {default})", context_names(),
+        [](auto& options) -> auto& { return options.context; })};
+}
+
+scenes::Bounds bounds_of(const char* option, const std::string& text) {
+    const std::vector<double> n = parse_numbers(option, text, 6, 6);
     const scenes::Bounds bounds{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     for (int axis = 0; axis < 3; ++axis) {
         if (bounds.low[axis] >= bounds.high[axis]) {
-            throw Error(Fault::usage, "--bounds",
+            throw Error(Fault::usage, option,
                         fmt::format("{0}0 = {1} is not less than {0}1 = {2}", "XYZ"[axis], bounds.low[axis],
                                     bounds.high[axis]),
                         "the order is X0,Y0,Z0,X1,Y1,Z1");
@@ -57,12 +60,6 @@ gl::ShaderSource shaders_in(const std::filesystem::path& folder) {
 
 }  // namespace
 
-CLI::Option* add_parsed_option(CLI::App& verb, const std::string& name, const std::string& value_name,
-                               const std::string& description,
-                               const std::function<void(const std::string&)>& parse) {
-    return verb.add_option_function<std::string>(name, parse, description)->type_name(value_name);
-}
-
 void add_report_options(CLI::App& verb, ReportOptions& options) {
     add_parsed_option(verb, "--json", "FILE", "write every figure as JSON too; - is stdout, without the text",
                       [&options](const std::string& target) {
@@ -79,32 +76,41 @@ void add_scene_argument(CLI::App& verb, SceneOptions& options) {
                     ".nii or .nii.gz file too")
         ->required()
         ->type_name("");
-    verb.add_flag("--trust-paths", options.trust_paths,
-                  "let the scene read files outside its own folder: only for\nfiles that you trust")
-        ->group(common_group);
+    add_table(verb, trust_table(), options, common_group);
+}
+
+OptionTable<SceneOptions> trust_table() {
+    return {flag_row<SceneOptions>(
+        "--trust-paths", "let the scene read files outside its own folder: only for\nfiles that you trust",
+        [](auto& options) -> auto& { return options.trust_paths; })};
+}
+
+OptionTable<SceneOptions> moment_table() {
+    return {
+        {"--time", "SECONDS",
+         "the moment to show (default: the rest pose); plays the\nfirst animation if none is named",
+         [](SceneOptions& options, const char* option, const std::string& text) {
+             options.seconds = parse_number(option, text);
+         },
+         [](const SceneOptions& options) -> std::optional<std::string> {
+             if (!options.seconds) return std::nullopt;
+             return fmt::format("{}", *options.seconds);
+         }},
+        text_row<SceneOptions>(
+            "--animation", "NAME|INDEX", "the animation to play, by name or counted from 0",
+            [](auto& options) -> auto& { return options.animation; }),
+        whole_row<SceneOptions>(
+            "--scene-index", "I", "which scene of the file, counted from 0 (default: the\nfile's own choice)",
+            0, max_scene_index, [](auto& options) -> auto& { return options.scene_index; }),
+    };
 }
 
 void add_moment_options(CLI::App& verb, SceneOptions& options) {
-    add_parsed_option(
-        verb, "--time", "SECONDS",
-        "the moment to show (default: the rest pose); plays the\nfirst animation if none is named",
-        [&options](const std::string& text) { options.seconds = parse_number("--time", text); })
-        ->group(common_group);
-    add_parsed_option(verb, "--animation", "NAME|INDEX", "the animation to play, by name or counted from 0",
-                      [&options](const std::string& text) { options.animation = text; })
-        ->group(common_group);
-    add_parsed_option(verb, "--scene-index", "I",
-                      "which scene of the file, counted from 0 (default: the\nfile's own choice)",
-                      [&options](const std::string& text) {
-                          options.scene_index = parse_int("--scene-index", text, 0, max_scene_index);
-                      })
-        ->group(common_group);
+    add_table(verb, moment_table(), options, common_group);
 }
 
 void add_driver_options(CLI::App& verb, DriverOptions& options) {
-    add_parsed_option(verb, "--context", "auto|osmesa|egl", "where OpenGL comes from (default: auto)",
-                      [&options](const std::string& text) { options.context = context_named(text); })
-        ->group(common_group);
+    add_table(verb, context_table(), options, common_group);
     add_shader_option(verb, options);
 }
 
@@ -121,28 +127,44 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
     add_report_options(verb, options.report);
 }
 
-void add_grid_options(CLI::App& verb, GridOptions& options) {
-    add_parsed_option(verb, "-r,--resolution", "N|X,Y,Z",
-                      fmt::format("voxels along each axis, 1 to {}: a cube, or a number for\neach (then the "
-                                  "JSON's resolution is an array of three)",
-                                  max_grid_resolution),
-                      [&options](const std::string& text) {
-                          options.resolution = parse_axes("--resolution", text, 1, max_grid_resolution);
-                      });
-    add_parsed_option(verb, "--voxel-size", "S",
-                      "the side of a voxel in world units, instead of -r: as\nmany voxels along each axis as "
-                      "that takes",
-                      [&options](const std::string& text) {
-                          options.voxel_size = parse_number("--voxel-size", text);
-                          if (*options.voxel_size <= 0.0)
-                              throw Error(Fault::usage, "--voxel-size",
-                                          fmt::format("\"{}\" is not above 0", text));
-                      });
-    add_parsed_option(verb, "--bounds", "X0,Y0,Z0,X1,Y1,Z1",
-                      "the part of the world to cut into voxels: the grid starts\nat its low corner and "
-                      "covers it along every "
-                      "axis (default:\nwhat leaves an empty voxel on each side of the scene,\ncentred)",
-                      [&options](const std::string& text) { options.bounds = bounds_of(text); });
+OptionTable<GridOptions> grid_table() {
+    return {
+        {"-r,--resolution", "N|X,Y,Z",
+         fmt::format("voxels along each axis, 1 to {}: a cube, or a number for\neach (then the JSON's "
+                     "resolution is an array of three)",
+                     max_grid_resolution),
+         [](GridOptions& options, const char* option, const std::string& text) {
+             options.resolution = parse_axes(option, text, 1, max_grid_resolution);
+         },
+         [](const GridOptions& options) -> std::optional<std::string> {
+             if (!options.resolution) return std::nullopt;
+             const glm::ivec3& axes = *options.resolution;
+             if (axes == glm::ivec3(axes.x)) return std::to_string(axes.x);
+             return fmt::format("{},{},{}", axes.x, axes.y, axes.z);
+         }},
+        {"--voxel-size", "S",
+         "the side of a voxel in world units, instead of -r: as\nmany voxels along each axis as that takes",
+         [](GridOptions& options, const char* option, const std::string& text) {
+             const double size = parse_number(option, text);
+             if (size <= 0.0) throw Error(Fault::usage, option, fmt::format("\"{}\" is not above 0", text));
+             options.voxel_size = size;
+         },
+         [](const GridOptions& options) -> std::optional<std::string> {
+             if (!options.voxel_size) return std::nullopt;
+             return fmt::format("{}", *options.voxel_size);
+         }},
+        {"--bounds", "X0,Y0,Z0,X1,Y1,Z1",
+         "the part of the world to cut into voxels: the grid starts\nat its low corner and covers it along "
+         "every axis (default:\nwhat leaves an empty voxel on each side of the scene,\ncentred)",
+         [](GridOptions& options, const char* option, const std::string& text) {
+             options.bounds = bounds_of(option, text);
+         },
+         [](const GridOptions& options) -> std::optional<std::string> {
+             if (!options.bounds) return std::nullopt;
+             const auto& [low, high] = *options.bounds;
+             return fmt::format("{},{},{},{},{},{}", low.x, low.y, low.z, high.x, high.y, high.z);
+         }},
+    };
 }
 
 void check_grid_options(const GridOptions& options) {

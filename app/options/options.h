@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/options/option_table.h"
 #include "gl/context.h"
 #include "gl/shader_source.h"
 #include "scenes/snapshot.h"
@@ -32,6 +33,10 @@ struct SceneOptions {
     std::optional<std::string> animation;  ///< a name or an index
     std::optional<int> scene_index;
 };
+[[nodiscard]] OptionTable<SceneOptions> moment_table();
+/// `--trust-paths`.
+[[nodiscard]] OptionTable<SceneOptions> trust_table();
+/// `SCENE` and `--trust-paths`.
 void add_scene_argument(CLI::App& verb, SceneOptions& options);
 void add_moment_options(CLI::App& verb, SceneOptions& options);
 
@@ -41,7 +46,8 @@ struct DriverOptions {
     gl::ShaderSource shaders;
 };
 void add_driver_options(CLI::App& verb, DriverOptions& options);
-void add_shader_option(CLI::App& verb, DriverOptions& options);  ///< of those, for a verb with a window
+/// The shaders alone, for a verb with a window.
+void add_shader_option(CLI::App& verb, DriverOptions& options);
 
 /// The options that every verb that reads a scene at a moment understands.
 struct CommonOptions {
@@ -57,7 +63,7 @@ struct GridOptions {
     std::optional<double> voxel_size;
     std::optional<scenes::Bounds> bounds;
 };
-void add_grid_options(CLI::App& verb, GridOptions& options);
+[[nodiscard]] OptionTable<GridOptions> grid_table();
 /// @throws Error (Fault::usage) when they do not say how fine the grid is, or say it twice.
 void check_grid_options(const GridOptions& options);
 [[nodiscard]] voxelizer::Grid make_grid(const GridOptions& options, const scenes::Bounds& scene);
@@ -72,10 +78,5 @@ CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::pa
 /// Fails now, before any work, when a file cannot be written there. Leaves no trace.
 /// @throws Error (Fault::usage)
 void check_writable(const std::filesystem::path& path);
-
-/// An option whose text `parse` reads; what it throws ends the parsing.
-CLI::Option* add_parsed_option(CLI::App& verb, const std::string& name, const std::string& value_name,
-                               const std::string& description,
-                               const std::function<void(const std::string&)>& parse);
 
 }  // namespace cairn::app

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <glm/glm.hpp>
 
 #include "base/error.h"
 
@@ -80,6 +81,11 @@ glm::ivec3 parse_axes(std::string_view option, std::string_view text, int low, i
     for (int axis = 1; parts.size() == 3 && axis < 3; ++axis)
         axes[axis] = parse_int(option, parts[std::size_t(axis)], low, high);
     return axes;
+}
+
+double degrees_of(double radians) {
+    constexpr double steps_per_degree = 1e9;
+    return std::round(glm::degrees(radians) * steps_per_degree) / steps_per_degree;
 }
 
 std::pair<int, int> parse_size(std::string_view option, std::string_view text) {

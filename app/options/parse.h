@@ -23,6 +23,9 @@ namespace cairn::app {
 /// "512" or "640,480,512": one number for all three axes, or one for each; each within [low, high].
 [[nodiscard]] glm::ivec3 parse_axes(std::string_view option, std::string_view text, int low, int high);
 
+/// The degrees of an angle, rounded to 1e-9: the way from degrees to radians and back ends where it began.
+[[nodiscard]] double degrees_of(double radians);
+
 /// "640x480", each within [1, 16384].
 [[nodiscard]] std::pair<int, int> parse_size(std::string_view option, std::string_view text);
 

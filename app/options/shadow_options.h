@@ -7,12 +7,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/options/names.h"
+#include "app/options/option_table.h"
 #include "app/options/options.h"
 #include "app/options/view_options.h"
-#include "app/subject/scene_input.h"
-#include "renderer/renderer.h"
+#include "optics/light.h"
 #include "renderer/shadow/soft_shadow_map.h"
-#include "scenes/node_selection.h"
 
 namespace cairn::app {
 
@@ -26,7 +26,7 @@ struct ShadowOptions {
     std::optional<std::filesystem::path> output;
     std::optional<std::filesystem::path> difference;
     std::optional<int> rays;
-    bool cones = false;                      ///< in place of rays
+    bool cones = false;                      ///< instead of rays
     std::optional<optics::Light> direction;  ///< from --light-direction
     std::optional<glm::dvec2> rectangle;     ///< width and height
     std::optional<double> disk;              ///< radius
@@ -39,20 +39,11 @@ struct ShadowOptions {
     int truth_samples = 256;
     std::optional<std::filesystem::path> truth_cache;
 };
+[[nodiscard]] Names<ShadowMethod> shadow_method_names();
+
+/// The options of `cairn shadow` alone that have one value and are no file.
+[[nodiscard]] OptionTable<ShadowOptions> shadow_option_table();
+/// All options of `cairn shadow`.
 void add_shadow_options(CLI::App& verb, ShadowOptions& options);
-
-/// What a shadow is computed of: the nodes that were chosen, and the view with its light.
-struct ShadowTask {
-    SceneInput input;
-    scenes::NodeSelection occluders, receivers;
-    scenes::Snapshot shown;  ///< of both
-    renderer::View view;
-    bool is_soft = false;  ///< the light has an extent, and more than its middle is asked for
-};
-/// Voxels a side of the pyramid: --max-resolution, where it was given.
-[[nodiscard]] int pyramid_resolution(const ShadowOptions& options);
-
-/// @throws Error (Fault::usage) when the options contradict each other; before anything is written.
-[[nodiscard]] ShadowTask make_shadow_task(const ShadowOptions& options);
 
 }  // namespace cairn::app

@@ -1,10 +1,10 @@
 #include "app/options/transfer_option.h"
 
-#include <array>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "app/options/names.h"
 #include "app/options/parse.h"
 #include "base/error.h"
 
@@ -13,22 +13,19 @@ namespace {
 
 constexpr const char* option = "--transfer";
 
-struct Named {
-    std::string_view name;
-    std::string_view points;
-};
-
 // Colours are linear.
-constexpr std::array named = {
-    // For volumes that nothing is known of: what is denser than a tenth of the range, ever more opaque.
-    Named{"solid", "0.1:0.75,0.7,0.62:0;0.3:0.75,0.7,0.62:0.5;1:0.95,0.92,0.85:2"},
-    // Scans with contrast for bones: soft parts as a haze.
-    Named{"bone", "0.08:0.5,0.08,0.04:0;0.25:0.6,0.15,0.08:0.015;0.4:0.85,0.7,0.5:0.4;1:1,0.97,0.9:3"},
-    // Everything, thin: brighter where it is denser.
-    Named{"haze", "0.02:0.1,0.25,0.6:0;0.5:0.5,0.6,0.8:0.01;1:1,0.95,0.85:0.06"},
-    // Each density as opaque as it is great.
-    Named{"opaque", "0:0.8,0.75,0.7:0;1:0.8,0.75,0.7:4"},
-};
+Names<std::string_view> named_points() {
+    return {
+        // For volumes that nothing is known of: what is denser than a tenth of the range, ever more opaque.
+        {"solid", "0.1:0.75,0.7,0.62:0;0.3:0.75,0.7,0.62:0.5;1:0.95,0.92,0.85:2"},
+        // Scans with contrast for bones: soft parts as a haze.
+        {"bone", "0.08:0.5,0.08,0.04:0;0.25:0.6,0.15,0.08:0.015;0.4:0.85,0.7,0.5:0.4;1:1,0.97,0.9:3"},
+        // Everything, thin: brighter where it is denser.
+        {"haze", "0.02:0.1,0.25,0.6:0;0.5:0.5,0.6,0.8:0.01;1:1,0.95,0.85:0.06"},
+        // Each density as opaque as it is great.
+        {"opaque", "0:0.8,0.75,0.7:0;1:0.8,0.75,0.7:4"},
+    };
+}
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
     std::vector<std::string_view> parts;
@@ -43,10 +40,7 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 }  // namespace
 
 std::string transfer_names() {
-    std::string names;
-    for (const Named& entry : named)
-        names += (names.empty() ? "" : ", ") + std::string(entry.name);
-    return names;
+    return joined(named_points(), ", ", ", ");
 }
 
 renderer::TransferFunction TransferChoice::for_voxels(double voxel_size) const {
@@ -57,10 +51,7 @@ renderer::TransferFunction TransferChoice::for_voxels(double voxel_size) const {
 }
 
 TransferChoice parse_transfer(const std::string& text) {
-    std::string_view points = text;
-    for (const Named& entry : named) {
-        if (text == entry.name) points = entry.points;
-    }
+    const std::string_view points = find_named(text, named_points()).value_or(text);
     if (points.find(':') == std::string_view::npos) {
         throw Error(
             Fault::usage, option, fmt::format("there is no \"{}\"", text),

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/options/option_table.h"
 #include "app/options/options.h"
 #include "app/options/transfer_option.h"
 #include "renderer/renderer.h"
@@ -14,23 +15,32 @@
 /// What `cairn render` and `cairn view` have in common: from where to look, at what, through which tree.
 namespace cairn::app {
 
-constexpr int max_copies = 4096;
-constexpr int default_soft_rays = 64;  ///< a pixel
+constexpr int default_soft_rays = 64;  ///< per pixel
 
 struct ViewOptions {
-    renderer::View view;  ///< camera and light only count when they were given
+    /// Its camera and its light count only if they were given.
+    renderer::View view;
     renderer::TreeOptions tree;
     bool camera_given = false;
-    std::optional<std::string> light;       ///< as it was given
-    std::optional<std::string> brick_pool;  ///< likewise
-    std::optional<std::string> brick_cache;
+    bool light_given = false;
     std::optional<TransferChoice> transfer;  ///< of a volume
     int copies = 1;                          ///< of a volume, along each axis
     int zoom = 0;                            ///< of builtin:fractal, a power of two
 };
-void add_view_options(CLI::App& verb, ViewOptions& options);
-void add_camera_options(CLI::App& verb, ViewOptions& options);  ///< of those: picture, camera and light
-void add_tree_options(CLI::App& verb, ViewOptions& options);    ///< of those: voxels and their caches
+
+/// The picture, its camera and its light.
+[[nodiscard]] OptionTable<ViewOptions> camera_table();
+/// Shadows of that light.
+[[nodiscard]] OptionTable<ViewOptions> shadow_table();
+/// Voxels and their caches.
+[[nodiscard]] OptionTable<ViewOptions> tree_table();
+/// What is shown of the voxels, and how.
+[[nodiscard]] OptionTable<ViewOptions> look_table();
+/// `--zoom`, for `cairn render` alone.
+[[nodiscard]] OptionTable<ViewOptions> zoom_table();
+
+/// The options that `cairn render` and `cairn view` share: the tables above but the zoom.
+[[nodiscard]] OptionTable<ViewOptions> view_table();
 
 /// The view of the options, with the scene's own light and a camera that sees the whole scene where none was
 /// given. @throws Error as renderer::check_view() does.
@@ -44,7 +54,7 @@ void add_tree_options(CLI::App& verb, ViewOptions& options);    ///< of those: v
 [[nodiscard]] optics::Camera snapped(const optics::Camera& camera);
 
 /// A line for the shell that makes this picture again: the scene, the moment and the tree of the options, and
-/// the view, whose camera is a snapped one.
+/// the view, whose camera is a snapped one. Options that have their default value are left out.
 [[nodiscard]] std::string render_command(const SceneOptions& scene, const ViewOptions& options,
                                          const renderer::View& view, const std::filesystem::path& output);
 

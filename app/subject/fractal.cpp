@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "app/options/parse.h"
 #include "base/error.h"
 #include "renderer/pool/tree_shape.h"
 
 namespace cairn::app {
 namespace {
 
-/// The finest voxels are 2^-60 of the fractal: at this zoom they still are finer than a pixel.
-constexpr int most_zoom = 46;
 /// For N = 4 and M = 16.
 constexpr int deepest_level = 28;
 constexpr int finest_sponge = 1594323;  // 3^13
@@ -26,15 +21,6 @@ bool is_fractal(const SceneOptions& scene) {
 
 bool is_sponge(const SceneOptions& scene) {
     return scene.scene == "builtin:sponge";
-}
-
-void add_zoom_option(CLI::App& verb, int& zoom) {
-    add_parsed_option(
-        verb, "--zoom", "K",
-        fmt::format("of builtin:fractal alone, a set without a finest detail:\nlook 2^K times closer, "
-                    "0 to {} (default: 0)",
-                    most_zoom),
-        [&zoom](const std::string& text) { zoom = parse_int("--zoom", text, 0, most_zoom); });
 }
 
 renderer::TreeOptions fractal_tree(const ViewOptions& options) {

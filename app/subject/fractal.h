@@ -1,7 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "app/options/options.h"
 #include "app/options/view_options.h"
 #include "renderer/renderer.h"
@@ -13,9 +11,6 @@ namespace cairn::app {
 [[nodiscard]] bool is_fractal(const SceneOptions& scene);
 
 [[nodiscard]] bool is_sponge(const SceneOptions& scene);
-
-/// `--zoom`, a power of two.
-void add_zoom_option(CLI::App& verb, int& zoom);
 
 /// As deep as trees can be.
 /// @throws Error (Fault::usage) when a resolution was given too.

@@ -79,19 +79,10 @@ ShadowResult shadow_by_pyramid(const ShadowTask& task, const ShadowOptions& opti
 ShadowResult shadow_by_map(const ShadowTask& task, const ShadowOptions& options) {
     renderer::SoftShadowRenderer renderer(task.input.scene, task.input.snapshot, task.occluders,
                                           task.receivers, options.map, options.common.driver.shaders);
-    const optics::Light& light = task.view.light;
-    renderer::SoftShadowView view;
-    view.width = task.view.width;
-    view.height = task.view.height;
-    view.camera = task.view.camera;
-    view.light = {light.position, light.half_u, light.half_v};
-    view.light_color = light.color;
-    view.ambient = light.ambient;
-    view.background = task.view.background;
     Stopwatch watch;
-    renderer::SoftShadowPicture picture = renderer.render(view);
+    renderer::SoftShadowPicture picture = renderer.render(task.view);
     const double first_ms = watch.lap_ms();
-    picture = renderer.render(view);
+    picture = renderer.render(task.view);
     return {std::move(picture.image), std::move(picture.visible), renderer.map().statistics().milliseconds,
             first_ms};
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/options/shadow_options.h"
+#include "app/verbs/shadow_task.h"
 #include "renderer/renderer.h"
 
 /// The ways of `cairn shadow` to a shadow, and how far one is from another.

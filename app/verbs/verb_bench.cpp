@@ -27,18 +27,13 @@ struct Options {
     ReportOptions report;
 };
 
-std::string known_charts() {
-    std::string text;
-    for (const bench::ChartKind& kind : bench::charts())
-        text += (text.empty() ? "" : ", ") + std::string(kind.name);
-    return text;
-}
-
 const bench::ChartKind& chart_named(const std::string& name) {
+    Names<const bench::ChartKind*> names;
     for (const bench::ChartKind& kind : bench::charts())
-        if (kind.name == name) return kind;
+        names.emplace_back(kind.name, &kind);
+    if (const auto kind = find_named(name, names)) return **kind;
     throw Error(Fault::usage, "bench", "there is no chart \"" + name + "\"",
-                "choose one of: " + known_charts());
+                "choose one of: " + joined(names, ", ", ", "));
 }
 
 std::vector<int> sizes_of(const std::string& text) {

@@ -38,7 +38,7 @@ struct Options {
 void add_options(CLI::App& verb, Options& options) {
     add_output_option(verb, options.output, {".png"},
                       fmt::format("the picture (default: {} in the current folder)", default_output));
-    add_view_options(verb, options.view);
+    add_table(verb, view_table(), options.view);
     verb.add_option("--mesh", options.mesh,
                     "another scene, or the same, to draw as triangles in the\nsame picture, without voxels")
         ->type_name("SCENE");
@@ -47,7 +47,7 @@ void add_options(CLI::App& verb, Options& options) {
     verb.add_option("--proxy", options.proxy,
                     "a closed mesh: only what lies inside it is shown of the\nvoxels")
         ->type_name("SCENE");
-    add_zoom_option(verb, options.view.zoom);
+    add_table(verb, zoom_table(), options.view);
     add_common_options(verb, options.common);
 }
 

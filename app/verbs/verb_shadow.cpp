@@ -10,25 +10,12 @@
 #include "app/terminal/png.h"
 #include "app/terminal/report.h"
 #include "app/verbs/shadow_methods.h"
+#include "app/verbs/shadow_task.h"
 #include "app/verbs/verbs.h"
 #include "reference/shadow_truth.h"
 
 namespace cairn::app {
 namespace {
-
-const char* name_of(ShadowMethod method) {
-    switch (method) {
-        case ShadowMethod::voxel:
-            return "voxel";
-        case ShadowMethod::pyramid:
-            return "pyramid";
-        case ShadowMethod::soft_shadow_map:
-            return "soft-shadow-map";
-        case ShadowMethod::embree:
-            break;
-    }
-    return "embree";
-}
 
 ShadowResult shadow_by(ShadowMethod method, const ShadowTask& task, const ShadowOptions& options) {
     switch (method) {
@@ -74,7 +61,7 @@ ExitCode run(const ShadowOptions& options) {
     const ShadowTask task = make_shadow_task(options);
     const ShadowMethod method = *options.method;
     report.add("scene", options.common.scene.scene);
-    report.add("method", name_of(method));
+    report.add("method", name_of(method, shadow_method_names()));
     report.add("load_ms", watch.lap_ms());
     report.add("triangles", task.shown.triangle_count);
     report.add("width", task.view.width);

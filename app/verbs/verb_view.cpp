@@ -53,7 +53,7 @@ void add_options(CLI::App& verb, Options& options) {
     add_output_option(verb, options.output, {".png"},
                       "what the key P writes (default: the first of cairn-1.png,\ncairn-2.png, ... that is "
                       "free)");
-    add_view_options(verb, options.view);
+    add_table(verb, view_table(), options.view);
     add_parsed_option(
         verb, "--frames", "N",
         "leave once N frames have been shown and nothing is left\nto refine (default: with the "

@@ -40,10 +40,8 @@ void add_options(CLI::App& verb, Options& options) {
                       "surface: only voxels that the surface touches (default);\nsolid: what closed parts "
                       "enclose, too",
                       [&options](const std::string& name) {
-                          if (name != "surface" && name != "solid")
-                              throw Error(Fault::usage, "--fill", fmt::format("there is no \"{}\"", name),
-                                          "choose surface or solid");
-                          options.solid = name == "solid";
+                          const Names<bool> names = {{"surface", false}, {"solid", true}};
+                          options.solid = named("--fill", name, names);
                       });
     verb.add_flag("--plain", options.plain, "no colours and no normals in the file: much faster");
     add_voxelization_options(verb, options.voxelization);

@@ -13,7 +13,7 @@
 namespace cairn::app {
 
 void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options) {
-    add_grid_options(verb, options.grid);
+    add_table(verb, grid_table(), options.grid);
     add_parsed_option(
         verb, "--method", "NAME", "conservative, slice-map, three-axis, three-axis-conservative",
         [&options](const std::string& name) { options.method = voxelizer::method_named(name); });

@@ -11,7 +11,6 @@
 #include "bench/trials/samples.h"
 #include "gl/context.h"
 #include "reference/image.h"
-#include "reference/view.h"
 #include "renderer/renderer.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
@@ -91,12 +90,10 @@ private:
     void beside_embree(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                        const renderer::View& view) {
         renderer::Renderer ours(scene, snapshot, {}, options_.shaders);
-        const reference::ReferenceCamera camera = reference::camera_of(view.camera);
-        const reference::ReferenceLight light = reference::light_of(view.light);
         const reference::ImageTracer embree(scene, snapshot);
         using Rays = reference::ImageTracer::Rays;
         const auto trace = [&](Rays rays) {
-            return embree.trace(camera, light, view.width, view.height, 0, rays).milliseconds;
+            return embree.trace(view.camera, view.light, view.width, view.height, 0, rays).milliseconds;
         };
         compare(ours, view,
                 {{"embree-single", [&] { return trace(Rays::single); }, {}},

@@ -12,7 +12,6 @@
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "reference/image.h"
-#include "reference/view.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 
@@ -75,8 +74,7 @@ reference::ShadedImage truth_of(const scenes::Scene& scene, const scenes::Snapsh
     shading.background = view.background;
     shading.shadows = view.shadow == renderer::Shadow::hard;
     return reference::ImageTracer(scene, snapshot)
-        .shade(reference::camera_of(view.camera), reference::light_of(view.light), shading, view.width,
-               view.height, samples_a_side);
+        .shade(view.camera, view.light, shading, view.width, view.height, samples_a_side);
 }
 
 /// Frames in turn, over all that is varied.

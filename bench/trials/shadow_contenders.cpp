@@ -8,7 +8,6 @@
 
 #include "bench/peers/pcf_shadow.h"
 #include "reference/area_light.h"
-#include "reference/view.h"
 #include "renderer/soft_shadow.h"
 
 namespace cairn::bench {
@@ -129,12 +128,7 @@ ShadowRun run_map(std::shared_ptr<renderer::SoftShadowRenderer>& made, const Sha
         made =
             std::make_shared<renderer::SoftShadowRenderer>(scene.scene(), scene.all(), scene.caster_nodes(),
                                                            scene.ground_nodes(), map, trial.options.shaders);
-    renderer::SoftShadowView view;
-    view.width = trial.width;
-    view.height = trial.height;
-    view.camera = scene.view(trial.width, trial.height, 1).camera;
-    view.light = {scene.light().position, scene.light().half_u, scene.light().half_v};
-    renderer::SoftShadowPicture picture = made->render(view);
+    renderer::SoftShadowPicture picture = made->render(scene.view(trial.width, trial.height, 1));
     return {made->map().statistics().milliseconds, std::move(picture.visible), is_first, is_first};
 }
 
@@ -203,17 +197,14 @@ void add_plain_maps(const ShadowTrial& trial, Contenders& all) {
 ShadowRun run_embree_hard(const ShadowTrial& trial, Rays rays) {
     const renderer::View view = trial.scene.view(trial.width, trial.height, 1);
     const reference::ReferenceImage image =
-        trial.tracer.trace(reference::camera_of(view.camera), reference::light_of(view.light), trial.width,
-                           trial.height, 0, rays);
+        trial.tracer.trace(view.camera, view.light, trial.width, trial.height, 0, rays);
     return {image.milliseconds, {image.lit.begin(), image.lit.end()}};
 }
 
 ShadowRun run_embree_soft(const ShadowTrial& trial, const reference::AreaLightOptions& options) {
-    const reference::AreaLight light =
-        reference::area_light_of(trial.scene.light(), trial.scene.all().bounds);
     const auto start = Clock::now();
-    const auto found =
-        area_light_visibility(trial.tracer, trial.receivers.points, trial.receivers.normals, light, options);
+    const auto found = area_light_visibility(trial.tracer, trial.receivers.points, trial.receivers.normals,
+                                             trial.scene.light(), options);
     const double ms = milliseconds_since(start);
     std::vector<float> values;
     values.reserve(found.size());

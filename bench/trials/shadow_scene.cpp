@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "bench/trials/real_scenes.h"
-#include "renderer/shadow/shadow_frustum.h"
 #include "scenes/load.h"
 
 namespace cairn::bench {
@@ -49,15 +48,7 @@ optics::Light light_over(const scenes::Bounds& bounds) {
     const double diagonal = glm::length(bounds.high - bounds.low);
     const glm::dvec3 centre = 0.5 * (bounds.low + bounds.high);
     const glm::dvec3 position = centre + light_distance * diagonal * glm::normalize(to_light);
-    const renderer::RectangleLight aimed =
-        renderer::aimed_light(position, centre, light_side * diagonal, light_side * diagonal);
-    optics::Light light;
-    light.positional = true;
-    light.position = position;
-    light.shape = optics::LightShape::rectangle;
-    light.half_u = aimed.half_u;
-    light.half_v = aimed.half_v;
-    return light;
+    return optics::aimed_light(position, centre, light_side * diagonal, light_side * diagonal);
 }
 
 /// Steeper than optics::framing_camera(), from as far: the ground shows more of its shadow.

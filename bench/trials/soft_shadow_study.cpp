@@ -91,6 +91,17 @@ scenes::Primitive cut_in_parts(const scenes::Primitive& whole, int parts) {
     return fine;
 }
 
+/// Flat, and level.
+optics::Light light_over(const ShadowPlacement& placement) {
+    optics::Light light;
+    light.positional = true;
+    light.position = dvec3(-placement.lateral, study_light_height - placement.gap, 0.0);
+    light.shape = optics::LightShape::rectangle;
+    light.half_u = dvec3(0.5 * placement.light_width, 0.0, 0.0);
+    light.half_v = dvec3(0.0, 0.0, 0.5 * placement.light_width);
+    return light;
+}
+
 }  // namespace
 
 ShadowOccluder::ShadowOccluder(const std::string& path) : ShadowOccluder(scene_name(path), standing(path)) {}
@@ -110,8 +121,7 @@ ShadowOccluder ShadowOccluder::cut(int parts) const {
 /// The occluder stays, and the light and the floor are placed around it.
 ShadowSetting::ShadowSetting(const ShadowOccluder& occluder, const ShadowPlacement& placement)
     : placement_(placement),
-      light_{dvec3(-placement.lateral, study_light_height - placement.gap, 0.0),
-             dvec3(0.5 * placement.light_width, 0.0, 0.0), dvec3(0.0, 0.0, 0.5 * placement.light_width)},
+      light_(light_over(placement)),
       floor_(std::make_unique<scenes::Scene>(scene_of({level_square(floor_half, floor_height())}))),
       floor_snapshot_(scenes::take_snapshot(*floor_)),
       floor_mesh_(std::make_unique<renderer::ShadowMesh>(*floor_, floor_snapshot_)),
@@ -129,7 +139,7 @@ renderer::ShadowFrustum ShadowSetting::frustum(StudyWindow window) const {
 ShadowPoints shadow_points(const renderer::SoftShadowMap& map) {
     const renderer::ShadowMapValues depths = map.receiver_inverse_depths();
     const renderer::ShadowWindow& window = map.frustum().receivers;
-    const glm::dmat4 world_from_light = glm::inverse(renderer::light_from_world(map.light()));
+    const glm::dmat4 world_from_light = glm::inverse(optics::light_from_world(map.light()));
     ShadowPoints points;
     for (int y = study_step / 2; y < depths.size; y += study_step) {
         for (int x = study_step / 2; x < depths.size; x += study_step) {
@@ -146,12 +156,10 @@ ShadowPoints shadow_points(const renderer::SoftShadowMap& map) {
 }
 
 std::vector<double> truth_at(const ShadowPoints& points, const reference::ImageTracer& occluder,
-                             const renderer::RectangleLight& light) {
+                             const optics::Light& light) {
     std::vector<double> truth;
     for (const reference::LightVisibility& there : reference::area_light_visibility(
-             occluder, points.world, {},
-             {.centre = light.centre, .half_u = light.half_u, .half_v = light.half_v},
-             {.standard_error = truth_standard_error}))
+             occluder, points.world, {}, light, {.standard_error = truth_standard_error}))
         truth.push_back(there.visible);
     return truth;
 }

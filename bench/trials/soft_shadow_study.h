@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 
+#include "optics/light.h"
 #include "reference/image.h"
 #include "renderer/shadow/shadow_frustum.h"
 #include "renderer/shadow/shadow_mesh.h"
@@ -64,7 +65,7 @@ public:
     ShadowSetting(const ShadowOccluder& occluder, const ShadowPlacement& placement);
 
     [[nodiscard]] const ShadowPlacement& placement() const { return placement_; }
-    [[nodiscard]] const renderer::RectangleLight& light() const { return light_; }
+    [[nodiscard]] const optics::Light& light() const { return light_; }
     [[nodiscard]] const renderer::ShadowMesh& floor() const { return *floor_mesh_; }
     /// The receivers' window is the same in both.
     [[nodiscard]] renderer::ShadowFrustum frustum(StudyWindow window) const;
@@ -72,7 +73,7 @@ public:
 
 private:
     ShadowPlacement placement_;
-    renderer::RectangleLight light_;
+    optics::Light light_;
     std::unique_ptr<scenes::Scene> floor_;
     scenes::Snapshot floor_snapshot_;
     std::unique_ptr<renderer::ShadowMesh> floor_mesh_;
@@ -91,7 +92,7 @@ inline constexpr int study_step = 3;
 
 /// What of the light each point sees, by Embree, to a standard error of 1/512.
 [[nodiscard]] std::vector<double> truth_at(const ShadowPoints& points, const reference::ImageTracer& occluder,
-                                           const renderer::RectangleLight& light);
+                                           const optics::Light& light);
 
 /// Atty et al. 2005, section 4.2.1: over the points that are in shadow or penumbra, by the map or in truth.
 struct SoftShadowErrors {

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-
-#include "base/error.h"
 
 namespace cairn::renderer {
 namespace {
@@ -77,45 +74,9 @@ ShadowWindow window_of(glm::dvec2 low, glm::dvec2 high) {
 
 }  // namespace
 
-RectangleLight aimed_light(const glm::dvec3& centre, const glm::dvec3& target, double width, double height,
-                           const glm::dvec3& up) {
-    const glm::dvec3 way = target - centre;
-    if (!(width > 0.0) || !(height > 0.0) || !(glm::length(way) > 0.0)) {
-        throw Error(Fault::usage, "light", "a rectangle needs a width, a height and a target to shine on");
-    }
-    const glm::dvec3 forward = glm::normalize(way);
-    glm::dvec3 across = glm::cross(up, forward);
-    if (glm::length(across) < 1e-6 * glm::length(up))  // straight up or down: any direction is level
-        across = std::abs(forward.x) < 0.5 ? glm::cross(glm::dvec3(1, 0, 0), forward)
-                                           : glm::cross(glm::dvec3(0, 0, 1), forward);
-    across = glm::normalize(across);
-    return {centre, 0.5 * width * across, 0.5 * height * glm::cross(forward, across)};
-}
-
-glm::dvec2 half_size(const RectangleLight& light) {
-    return {glm::length(light.half_u), glm::length(light.half_v)};
-}
-
-glm::dmat4 light_from_world(const RectangleLight& light) {
-    const glm::dvec2 half = half_size(light);
-    if (!(half.x > 0.0) || !(half.y > 0.0) || !std::isfinite(half.x + half.y)) {
-        throw Error(Fault::usage, "light", "a half axis of the rectangle has no length",
-                    "give a small rectangle instead of a point or a line");
-    }
-    const glm::dvec3 u = light.half_u / half.x;
-    const glm::dvec3 v = light.half_v / half.y;
-    if (std::abs(glm::dot(u, v)) > 1e-6) {
-        throw Error(Fault::usage, "light", "the half axes of the rectangle are not at a right angle");
-    }
-    const glm::dmat3 axes = glm::transpose(glm::dmat3(u, v, glm::cross(u, v)));
-    glm::dmat4 matrix(axes);
-    matrix[3] = glm::dvec4(-(axes * light.centre), 1.0);
-    return matrix;
-}
-
-ShadowFrustum fit_shadow_frustum(const RectangleLight& light, const scenes::Snapshot& occluders,
+ShadowFrustum fit_shadow_frustum(const optics::Light& light, const scenes::Snapshot& occluders,
                                  const scenes::Snapshot& receivers, double near_distance) {
-    const glm::dmat4 from_world = light_from_world(light);
+    const glm::dmat4 from_world = optics::light_from_world(light);
     ShadowFrustum frustum;
     frustum.near_distance = near_distance;
     if (!(near_distance > 0.0)) {
@@ -131,7 +92,7 @@ ShadowFrustum fit_shadow_frustum(const RectangleLight& light, const scenes::Snap
     if (casts.nothing()) return frustum;
     // Penumbra extents reach furthest for the nearest occluder and the furthest receiver (Atty et al., 3.3).
     const glm::dvec2 reach =
-        half_size(light) * std::max(0.0, 1.0 / casts.least_depth - 1.0 / takes.greatest_depth);
+        optics::half_size(light) * std::max(0.0, 1.0 / casts.least_depth - 1.0 / takes.greatest_depth);
     const glm::dvec2 low = glm::max(takes.low, casts.low - reach);
     const glm::dvec2 high = glm::min(takes.high, casts.high + reach);
     if (low.x < high.x && low.y < high.y) frustum.receivers = window_of(low, high);

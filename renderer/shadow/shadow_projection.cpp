@@ -106,12 +106,12 @@ void ShadowProjection::draw_mesh(const ProjectionView& view, const SoftShadowMap
     top_first[1][1] = -1.0;
     const ShadowWindow& window = map.frustum().receivers;
     program_.set("clip_from_mesh", mesh.from_mesh(top_first * view.clip_from_world));
-    program_.set("light_from_mesh", mesh.from_mesh(light_from_world(map.light())));
+    program_.set("light_from_mesh", mesh.from_mesh(optics::light_from_world(map.light())));
     program_.set("receiver_window", glm::vec4(glm::vec2(window.low), glm::vec2(window.high)));
     program_.set("near_distance", float(map.frustum().near_distance));
     program_.set("is_receiver", is_receiver ? 1 : 0);
     program_.set("eye", glm::vec3(view.eye - mesh.origin()));
-    program_.set("light", glm::vec3(map.light().centre - mesh.origin()));
+    program_.set("light", glm::vec3(map.light().position - mesh.origin()));
     program_.set("light_color", glm::vec4(view.light_color, view.ambient));
     mesh.draw(program_);
 }

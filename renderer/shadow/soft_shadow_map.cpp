@@ -130,7 +130,7 @@ struct SoftShadowMap::Parts {
     void find_visible() const;
 
     SoftShadowOptions options;
-    RectangleLight light;
+    optics::Light light;
     ShadowFrustum frustum;
     SoftShadowStatistics statistics;
 
@@ -197,7 +197,7 @@ void SoftShadowMap::Parts::build_targets() {
 }
 
 void SoftShadowMap::Parts::set_uniforms() const {
-    const glm::vec2 half_light(half_size(light));
+    const glm::vec2 half_light(optics::half_size(light));
     for (const gl::Program* program : {&count_program, &list_program, &hide_program}) {
         program->set("occluder_window", vec_of(frustum.occluders));
         program->set("receiver_window", vec_of(frustum.receivers));
@@ -206,7 +206,7 @@ void SoftShadowMap::Parts::set_uniforms() const {
         program->set("occluder_size", options.occluder_size);
         program->set("receiver_size", options.receiver_size);
     }
-    const glm::dvec2 light_size = 2.0 * half_size(light);
+    const glm::dvec2 light_size = 2.0 * optics::half_size(light);
     const ShadowWindow& onto = frustum.receivers;
     hide_program.set("tangents_from_pixel",
                      glm::vec4((onto.high - onto.low) / double(options.receiver_size) / light_size,
@@ -217,7 +217,7 @@ void SoftShadowMap::Parts::set_uniforms() const {
 void SoftShadowMap::Parts::draw_map(const ShadowMesh& mesh, const ShadowWindow& window,
                                     const gl::FramebufferHandle& target, int size) const {
     draw_map_program.use();
-    draw_map_program.set("light_from_mesh", mesh.from_mesh(light_from_world(light)));
+    draw_map_program.set("light_from_mesh", mesh.from_mesh(optics::light_from_world(light)));
     draw_map_program.set("window", vec_of(window));
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
     glViewport(0, 0, size, size);
@@ -369,10 +369,10 @@ SoftShadowMap::SoftShadowMap(SoftShadowMap&&) noexcept = default;
 SoftShadowMap& SoftShadowMap::operator=(SoftShadowMap&&) noexcept = default;
 SoftShadowMap::~SoftShadowMap() = default;
 
-void SoftShadowMap::compute(const RectangleLight& light, const ShadowFrustum& frustum,
+void SoftShadowMap::compute(const optics::Light& light, const ShadowFrustum& frustum,
                             const ShadowMesh& occluders, const ShadowMesh& receivers) {
     check(frustum);
-    static_cast<void>(light_from_world(light));
+    static_cast<void>(optics::light_from_world(light));
     parts_->light = light;
     parts_->frustum = frustum;
     parts_->compute(occluders, receivers);
@@ -381,7 +381,7 @@ void SoftShadowMap::compute(const RectangleLight& light, const ShadowFrustum& fr
 const SoftShadowOptions& SoftShadowMap::options() const {
     return parts_->options;
 }
-const RectangleLight& SoftShadowMap::light() const {
+const optics::Light& SoftShadowMap::light() const {
     return parts_->light;
 }
 const ShadowFrustum& SoftShadowMap::frustum() const {

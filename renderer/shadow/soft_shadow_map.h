@@ -82,12 +82,12 @@ public:
     ~SoftShadowMap();
 
     /// @throws Error  Fault::usage for a light or a frustum that is none.
-    void compute(const RectangleLight& light, const ShadowFrustum& frustum, const ShadowMesh& occluders,
+    void compute(const optics::Light& light, const ShadowFrustum& frustum, const ShadowMesh& occluders,
                  const ShadowMesh& receivers);
 
     // Of the last compute().
     [[nodiscard]] const SoftShadowOptions& options() const;
-    [[nodiscard]] const RectangleLight& light() const;
+    [[nodiscard]] const optics::Light& light() const;
     [[nodiscard]] const ShadowFrustum& frustum() const;
     [[nodiscard]] const SoftShadowStatistics& statistics() const;
     /// R32F, receiver_size texels a side: the share of the light that is seen, in [0, 1].

@@ -81,12 +81,12 @@ protected:
 
 /// What is seen of the light past the unit square, in closed form.
 double seen_past_square(const ShadowSetting& setting, const glm::dvec3& point) {
-    const glm::dvec3 light = setting.light().centre;
+    const glm::dvec3 light = setting.light().position;
     const double x = -light.x;
     const std::vector<glm::dvec2> polygon = {
         {x - 0.5, -0.5}, {x + 0.5, -0.5}, {x + 0.5, 0.5}, {x - 0.5, 0.5}};
     return visible_past(polygon, light.y, {point.x - light.x, point.z, light.y - point.y},
-                        renderer::half_size(setting.light()));
+                        optics::half_size(setting.light()));
 }
 
 // What all the figures stand on: the points lie on the floor, where the texels of the map say what they see;

@@ -13,12 +13,15 @@ namespace {
 
 using glm::dvec2;
 using glm::dvec3;
+using optics::Light;
+using optics::LightShape;
+using test::light_above;
 using test::ShadowScene;
 using test::square;
 
 constexpr AreaLightOptions fine = {.standard_error = 0.002, .most_samples = 1 << 18};
 
-LightVisibility seen_from(const ShadowScene& scene, const dvec3& point, const AreaLight& light,
+LightVisibility seen_from(const ShadowScene& scene, const dvec3& point, const Light& light,
                           const dvec3& normal = dvec3(0.0), const AreaLightOptions& options = fine) {
     const ImageTracer tracer(scene.scene, scene.occluders);
     return area_light_visibility(tracer, {&point, 1}, {&normal, 1}, light, options)[0];
@@ -31,7 +34,7 @@ void expect_visible(const LightVisibility& found, double truth) {
 
 TEST(AreaLight, RectanglePastASquareIsTheClosedForm) {
     const ShadowScene scene(square({0.1, 1.0, -0.2}, 0.5), square({0, 0, 0}, 2.0));
-    const AreaLight light = {.centre = {0, 3, 0}, .half_u = {0.4, 0, 0}, .half_v = {0, 0, 0.25}};
+    const Light light = light_above(3.0, 0.4, 0.25);
     const std::vector<dvec2> polygon = {{-0.4, -0.7}, {0.6, -0.7}, {0.6, 0.3}, {-0.4, 0.3}};
     for (const double x : {-1.5, -0.9, -0.7, 0.0, 0.8, 1.0}) {
         const double truth = test::visible_past(polygon, 2.0, {x, 0.3, 3.0}, {0.4, 0.25});
@@ -42,8 +45,8 @@ TEST(AreaLight, RectanglePastASquareIsTheClosedForm) {
 // The edge of a wide sheet cuts a segment off the disk.
 TEST(AreaLight, DiskPastAnEdgeIsACircularSegment) {
     const ShadowScene scene(square({10.0, 1.0, 0.0}, 10.0), square({0, 0, 0}, 2.0));
-    const AreaLight light = {
-        .shape = AreaLight::Shape::disk, .centre = {0, 2, 0}, .half_u = {0.5, 0, 0}, .half_v = {0, 0, 0.5}};
+    Light light = light_above(2.0, 0.5, 0.5);
+    light.shape = LightShape::disk;
     for (const double x : {-0.4, -0.2, 0.0, 0.3}) {
         // From (x, 0, 0) past x = 0 at half the way, what is below -x of the light's plane is seen.
         const double h = -x / 0.5;
@@ -52,38 +55,52 @@ TEST(AreaLight, DiskPastAnEdgeIsACircularSegment) {
     }
 }
 
-// Solid angles of a cone on one side of a plane through its tip, summed over a grid of directions.
+/// Of a cone of directions from (x, 0, 0), the share of its solid angle that passes x < 0 at height 1, summed
+/// over a grid of directions.
+double share_past_the_edge(double x, const dvec3& axis, double sine) {
+    double all = 0.0;
+    double seen = 0.0;
+    constexpr int steps = 1000;
+    for (int i = 0; i < steps; ++i) {
+        const double height = (i + 0.5) / steps;
+        for (int k = 0; k < steps; ++k) {
+            const double angle = 2.0 * std::numbers::pi * (k + 0.5) / steps;
+            const double across = std::sqrt(1.0 - height * height);
+            const dvec3 way(across * std::cos(angle), height, across * std::sin(angle));
+            if (glm::dot(way, axis) < std::sqrt(1.0 - sine * sine)) continue;
+            ++all;
+            if (x + way.x / way.y < 0.0) ++seen;
+        }
+    }
+    return seen / all;
+}
+
 TEST(AreaLight, SphereIsMeasuredInSolidAngle) {
     const ShadowScene scene(square({10.0, 1.0, 0.0}, 10.0), square({0, 0, 0}, 2.0));
-    const AreaLight light = {.shape = AreaLight::Shape::sphere, .centre = {0, 2, 0}, .radius = 0.9};
+    const Light light = {.positional = true, .position = {0, 2, 0}, .radius = 0.9};
     for (const double x : {-0.5, 0.0, 0.25}) {
-        const dvec3 point(x, 0.0, 0.0);
-        const dvec3 axis = glm::normalize(light.centre - point);
-        const double sine = light.radius / glm::length(light.centre - point);
-        double all = 0.0;
-        double seen = 0.0;
-        constexpr int steps = 1000;
-        for (int i = 0; i < steps; ++i) {
-            const double height = (i + 0.5) / steps;
-            for (int k = 0; k < steps; ++k) {
-                const double angle = 2.0 * std::numbers::pi * (k + 0.5) / steps;
-                const double across = std::sqrt(1.0 - height * height);
-                const dvec3 way(across * std::cos(angle), height, across * std::sin(angle));
-                if (glm::dot(way, axis) < std::sqrt(1.0 - sine * sine)) continue;
-                ++all;
-                if (x + way.x / way.y < 0.0) ++seen;
-            }
-        }
-        expect_visible(seen_from(scene, point, light), seen / all);
+        const dvec3 way = light.position - dvec3(x, 0.0, 0.0);
+        const double truth = share_past_the_edge(x, glm::normalize(way), light.radius / glm::length(way));
+        expect_visible(seen_from(scene, {x, 0.0, 0.0}, light), truth);
+    }
+}
+
+// It stands as a sphere far away: from everywhere in the scene it has the same direction and the same angle.
+TEST(AreaLight, DirectionalLightIsAConeOfItsAngle) {
+    const ShadowScene scene(square({10.0, 1.0, 0.0}, 10.0), square({0, 0, 0}, 2.0));
+    const Light light = {.towards = {0.5, 2.0, 0.0}, .angle = 0.4};
+    for (const double x : {-0.5, -0.25, 0.0}) {
+        const double truth = share_past_the_edge(x, glm::normalize(light.towards), std::sin(light.angle));
+        expect_visible(seen_from(scene, {x, 0.0, 0.0}, light), truth);
     }
 }
 
 TEST(AreaLight, BelowTheTangentPlaneNothingIsSeen) {
     const ShadowScene scene(square({0, -5, 0}, 0.1), square({0, 0, 0}, 2.0));
-    for (const AreaLight::Shape shape :
-         {AreaLight::Shape::rectangle, AreaLight::Shape::disk, AreaLight::Shape::sphere}) {
-        const AreaLight light = {
-            .shape = shape, .centre = {0, 2, 0}, .half_u = {0.5, 0, 0}, .half_v = {0, 0, 0.5}};
+    for (const LightShape shape : {LightShape::rectangle, LightShape::disk, LightShape::sphere}) {
+        Light light = light_above(2.0, 0.5, 0.5);
+        light.shape = shape;
+        light.radius = 0.1;
         expect_visible(seen_from(scene, {0, 0, 0}, light, {1, 0, 0}), 0.5);
         expect_visible(seen_from(scene, {0, 0, 0}, light, {0, -1, 0}), 0.0);
         expect_visible(seen_from(scene, {0, 0, 0}, light, {0, 1, 0}), 1.0);
@@ -93,7 +110,7 @@ TEST(AreaLight, BelowTheTangentPlaneNothingIsSeen) {
 // The standard error is honest: over many points, the truth is where it says.
 TEST(AreaLight, StandardErrorTellsTheSpread) {
     const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.5, 0.3), square({0, 0, 0}, 2.0));
-    const AreaLight light = {.centre = {0, 2, 0}, .half_u = {0.4, 0, 0}, .half_v = {0, 0, 0.4}};
+    const Light light = light_above(2.0, 0.4, 0.4);
     const ImageTracer tracer(scene.scene, scene.occluders);
     std::vector<dvec2> polygon;
     const test::Corners corners = square({0.0, 1.0, 0.0}, 0.5, 0.3);
@@ -119,7 +136,7 @@ TEST(AreaLight, StandardErrorTellsTheSpread) {
 
 TEST(AreaLight, DoesNotDependOnTheThreads) {
     const ShadowScene scene(test::ball({0.0, 1.0, 0.0}, 0.5, 2), square({0, 0, 0}, 2.0));
-    const AreaLight light = {.centre = {0, 3, 0}, .half_u = {0.4, 0, 0}, .half_v = {0, 0, 0.4}};
+    const Light light = light_above(3.0, 0.4, 0.4);
     const ImageTracer tracer(scene.scene, scene.occluders);
     std::vector<dvec3> points;
     for (int i = 0; i < 50; ++i)
@@ -137,7 +154,7 @@ TEST(AreaLight, DoesNotDependOnTheThreads) {
 // their count, and packets find what single rays find.
 TEST(AreaLight, ExactStrataTakeThatManySamples) {
     const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.5), square({0, 0, 0}, 2.0));
-    const AreaLight light = {.centre = {0, 2, 0}, .half_u = {0.4, 0, 0}, .half_v = {0, 0, 0.4}};
+    const Light light = light_above(2.0, 0.4, 0.4);
     const ImageTracer tracer(scene.scene, scene.occluders);
     const std::vector<dvec2> polygon = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
     std::vector<dvec3> points;
@@ -167,7 +184,7 @@ TEST(AreaLight, ExactStrataTakeThatManySamples) {
 
 TEST(AreaLight, RefusesWhatIsNoLight) {
     const ShadowScene scene(square({0, 1, 0}, 0.1), square({0, 0, 0}, 2.0));
-    const auto refused = [&](const AreaLight& light, const AreaLightOptions& options = {}) {
+    const auto refused = [&](const Light& light, const AreaLightOptions& options = {}) {
         try {
             (void)seen_from(scene, {0, 0, 0}, light, dvec3(0.0), options);
         } catch (const Error& error) {
@@ -175,13 +192,16 @@ TEST(AreaLight, RefusesWhatIsNoLight) {
         }
         return false;
     };
-    EXPECT_TRUE(refused({.half_u = dvec3(0.0)}));
-    EXPECT_TRUE(refused({.shape = AreaLight::Shape::sphere, .radius = 0.0}));
-    EXPECT_TRUE(refused({.shape = AreaLight::Shape::sphere, .centre = {0, 0.1, 0}, .radius = 0.2}));
-    EXPECT_TRUE(refused({}, {.standard_error = 0.0}));
-    EXPECT_TRUE(refused({}, {.exact_strata = -1}));
-    EXPECT_TRUE(refused({}, {.exact_strata = 257}));
-    EXPECT_FALSE(refused({}));
+    const Light light = light_above(1.0, 0.1, 0.1);
+    EXPECT_TRUE(refused(light_above(1.0, 0.0, 0.1)));
+    EXPECT_TRUE(refused({.positional = true, .position = {0, 1, 0}, .radius = 0.0}));
+    EXPECT_TRUE(refused({.positional = true, .position = {0, 0.1, 0}, .radius = 0.2}));
+    EXPECT_TRUE(refused({.positional = false, .angle = 0.0}));
+    EXPECT_TRUE(refused(light, {.standard_error = 0.0}));
+    EXPECT_TRUE(refused(light, {.exact_strata = -1}));
+    EXPECT_TRUE(refused(light, {.exact_strata = 257}));
+    EXPECT_FALSE(refused(light));
+    EXPECT_FALSE(refused({.positional = false, .angle = 0.1}));
 }
 
 }  // namespace

@@ -77,9 +77,8 @@ protected:
                 snapshot_.bounds.add(p);
         }
     }
-    ReferenceCamera camera_{.eye = {0, 0, 4},
-                            .yfov = 2.0 * std::atan(0.25)};  // one unit up and down at z = 0
-    ReferenceLight light_{.towards = {0, 0, 1}};
+    optics::Camera camera_{.eye = {0, 0, 4}, .yfov = 2.0 * std::atan(0.25)};  // one unit up and down at z = 0
+    optics::Light light_{.towards = {0, 0, 1}};
     scenes::Scene scene_;
     scenes::Snapshot snapshot_;
 };

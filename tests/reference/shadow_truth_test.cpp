@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "reference/light_cache.h"
-#include "reference/view.h"
 #include "scenes/builtin/builtin.h"
 #include "tests/support/scratch_folder.h"
 
@@ -174,22 +173,50 @@ TEST(ShadowTruth, CacheThatCannotBeWrittenIsTold) {
 TEST(ShadowTruth, ExactSamplesAreAnotherQuestion) {
     Knot knot;
     const std::vector<glm::dvec3> points = {{0, 0, 0}};
-    const AreaLight light = area_light_of(knot.light, knot.snapshot.bounds);
     const auto hash = [&](const AreaLightOptions& options) {
-        return hash_of({knot.scene, knot.snapshot, points, points, light, options});
+        return hash_of({knot.scene, knot.snapshot, points, points, knot.light, options});
     };
     EXPECT_NE(hash({}), hash({.exact_strata = 4}));
     EXPECT_NE(hash({.exact_strata = 2}), hash({.exact_strata = 4}));
     EXPECT_NE(hash({}), hash({.rays = ImageTracer::Rays::packets}));
 }
 
+// All of a light that its samples depend on, and nothing else.
+TEST(ShadowTruth, OfALightWhatItsShapeUsesIsPartOfTheQuestion) {
+    const Knot knot;
+    const std::vector<glm::dvec3> points = {{0, 0, 0}};
+    const auto hash = [&](const optics::Light& light) {
+        return hash_of({knot.scene, knot.snapshot, points, points, light, {}});
+    };
+    optics::Light far{.towards = {1, 2, 3}, .angle = 0.1};
+    const LightHash before = hash(far);
+    far.radius = 2.0;
+    far.ambient = 0.5F;
+    EXPECT_EQ(hash(far), before);
+    far.angle = 0.2;
+    EXPECT_NE(hash(far), before);
+    far.angle = 0.1;
+    far.towards.x = 1.1;
+    EXPECT_NE(hash(far), before);
+    optics::Light flat = optics::aimed_light({0, 3, 0}, {0, 0, 0}, 1.0, 1.0);
+    const LightHash rectangle = hash(flat);
+    flat.radius = 2.0;
+    EXPECT_EQ(hash(flat), rectangle);
+    flat.shape = optics::LightShape::disk;
+    EXPECT_NE(hash(flat), rectangle);
+    flat.shape = optics::LightShape::rectangle;
+    flat.half_u *= 2.0;
+    EXPECT_NE(hash(flat), rectangle);
+}
+
 // A hole in an alpha mask lets light through, so it is part of the question.
 TEST(ShadowTruth, MasksArePartOfTheQuestion) {
     Knot knot;
     const std::vector<glm::dvec3> points = {{0, 0, 0}};
-    const AreaLight light = area_light_of(knot.light, knot.snapshot.bounds);
     const AreaLightOptions options;
-    const auto hash = [&] { return hash_of({knot.scene, knot.snapshot, points, points, light, options}); };
+    const auto hash = [&] {
+        return hash_of({knot.scene, knot.snapshot, points, points, knot.light, options});
+    };
     const LightHash before = hash();
     scenes::Primitive& primitive = knot.scene.meshes[0].primitives[0];
     if (primitive.material < 0) {

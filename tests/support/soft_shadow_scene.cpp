@@ -116,11 +116,15 @@ ShadowScene::ShadowScene(const Corners& occluder_corners, const Corners& receive
     occluders = scenes::part_of(whole, scenes::other_nodes(floor));
 }
 
-renderer::RectangleLight light_above(double height, double half_x, double half_z) {
-    return {{0.0, height, 0.0}, {half_x, 0.0, 0.0}, {0.0, 0.0, half_z}};
+optics::Light light_above(double height, double half_x, double half_z) {
+    return {.positional = true,
+            .position = {0.0, height, 0.0},
+            .shape = optics::LightShape::rectangle,
+            .half_u = {half_x, 0.0, 0.0},
+            .half_v = {0.0, 0.0, half_z}};
 }
 
-renderer::SoftShadowMap shadow_of(const ShadowScene& scene, const renderer::RectangleLight& light,
+renderer::SoftShadowMap shadow_of(const ShadowScene& scene, const optics::Light& light,
                                   const renderer::SoftShadowOptions& options,
                                   const renderer::ShadowFrustum& frustum) {
     const renderer::ShadowMesh occluders(scene.scene, scene.occluders);
@@ -130,7 +134,7 @@ renderer::SoftShadowMap shadow_of(const ShadowScene& scene, const renderer::Rect
     return map;
 }
 
-renderer::SoftShadowMap shadow_of(const ShadowScene& scene, const renderer::RectangleLight& light,
+renderer::SoftShadowMap shadow_of(const ShadowScene& scene, const optics::Light& light,
                                   const renderer::SoftShadowOptions& options) {
     return shadow_of(scene, light, options,
                      renderer::fit_shadow_frustum(light, scene.occluders, scene.receivers));

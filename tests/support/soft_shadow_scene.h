@@ -33,14 +33,12 @@ struct ShadowScene {
 };
 
 /// Shines down from `height` on x = z = 0.
-[[nodiscard]] renderer::RectangleLight light_above(double height, double half_x, double half_z);
+[[nodiscard]] optics::Light light_above(double height, double half_x, double half_z);
 
 /// Computes the map with fitted windows, or with those given. Needs a context.
-[[nodiscard]] renderer::SoftShadowMap shadow_of(const ShadowScene& scene,
-                                                const renderer::RectangleLight& light,
+[[nodiscard]] renderer::SoftShadowMap shadow_of(const ShadowScene& scene, const optics::Light& light,
                                                 const renderer::SoftShadowOptions& options);
-[[nodiscard]] renderer::SoftShadowMap shadow_of(const ShadowScene& scene,
-                                                const renderer::RectangleLight& light,
+[[nodiscard]] renderer::SoftShadowMap shadow_of(const ShadowScene& scene, const optics::Light& light,
                                                 const renderer::SoftShadowOptions& options,
                                                 const renderer::ShadowFrustum& frustum);
 

@@ -9,8 +9,8 @@ namespace cairn::test {
 using glm::dvec2;
 using glm::dvec3;
 
-LightTriangles in_light_space(const scenes::Snapshot& snapshot, const renderer::RectangleLight& light) {
-    const glm::dmat4 from_world = renderer::light_from_world(light);
+LightTriangles in_light_space(const scenes::Snapshot& snapshot, const optics::Light& light) {
+    const glm::dmat4 from_world = optics::light_from_world(light);
     LightTriangles triangles;
     for (const scenes::Item& item : snapshot.items) {
         const std::vector<std::uint32_t>& indices = item.primitive->indices;
@@ -44,7 +44,7 @@ DepthRange cast(const LightTriangles& triangles, const dvec2& tangents, double n
 double hidden_by(const renderer::SoftShadowMap& map, const interop::MicroPatch& patch, int x, int y,
                  double receiver_inverse_depth) {
     if (!(receiver_inverse_depth > 0.0) || double(patch.inverse_depth) <= receiver_inverse_depth) return 0.0;
-    const dvec2 half = renderer::half_size(map.light());
+    const dvec2 half = optics::half_size(map.light());
     const renderer::ShadowWindow& from = map.frustum().occluders;
     const renderer::ShadowWindow& onto = map.frustum().receivers;
     const double patch_depth = 1.0 / double(patch.inverse_depth);

@@ -13,8 +13,7 @@ namespace cairn::test {
 
 /// Triangles in light space.
 using LightTriangles = std::vector<std::array<glm::dvec3, 3>>;
-[[nodiscard]] LightTriangles in_light_space(const scenes::Snapshot& snapshot,
-                                            const renderer::RectangleLight& light);
+[[nodiscard]] LightTriangles in_light_space(const scenes::Snapshot& snapshot, const optics::Light& light);
 
 /// Inverse depths along the ray from the light's centre, past the near distance; 0 = nothing there.
 struct DepthRange {

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "reference/image.h"
-#include "reference/view.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
 #include "scenes/builtin/builtin.h"
@@ -29,7 +28,7 @@ void expect_depth_order(const scenes::Scene& scene, const scenes::Scene& mesh, c
     Renderer renderer = voxels_of(scene, resolution);
     renderer.set_mix({.meshes = raster(mesh)});
     const optics::Image image = renderer.render(view);
-    const reference::ReferenceCamera camera = reference::camera_of(view.camera);
+    const optics::Camera& camera = view.camera;
     const scenes::Snapshot scene_now = scenes::take_snapshot(scene);
     const scenes::Snapshot mesh_now = scenes::take_snapshot(mesh);
     const auto voxels = reference::ImageTracer(scene, scene_now).trace(camera, {}, view.width, view.height);

@@ -1,6 +1,6 @@
 // Where soft shadow maps fail, or might, beside what tests/renderer/shadow/soft_shadow_map_test.cpp has (a
 // tiny light, contact of a box, an occluder through the light, FP16, walls of a box): each test asserts what
-// soft_shadow_map.h and rectangle_light.h say of it.
+// soft_shadow_map.h and optics/light.h say of it.
 
 #include <algorithm>
 #include <array>
@@ -19,7 +19,8 @@ namespace {
 
 using glm::dvec2;
 using glm::dvec3;
-using renderer::RectangleLight;
+using optics::Light;
+using renderer::fit_shadow_frustum;
 using renderer::ShadowFrustum;
 using renderer::ShadowPasses;
 using renderer::SoftShadowMap;
@@ -33,19 +34,18 @@ SoftShadowOptions sizes(int occluder_size, int receiver_size) {
     return {occluder_size, receiver_size, ShadowPasses::two, renderer::ShadowFormat::fp32};
 }
 
-std::vector<double> rays_find(const ShadowScene& scene, const RectangleLight& light,
+std::vector<double> rays_find(const ShadowScene& scene, const Light& light,
                               const std::vector<dvec3>& points) {
     const reference::ImageTracer tracer(scene.scene, scene.occluders);
     std::vector<double> seen;
     for (const reference::LightVisibility& there : reference::area_light_visibility(
-             tracer, points, {}, {.centre = light.centre, .half_u = light.half_u, .half_v = light.half_v},
-             {.standard_error = 0.006, .most_samples = 2048}))
+             tracer, points, {}, light, {.standard_error = 0.006, .most_samples = 2048}))
         seen.push_back(there.visible);
     return seen;
 }
 
 std::vector<double> rays_find(const ShadowScene& scene, const SoftShadowMap& map) {
-    const glm::dmat4 world_from_light = glm::inverse(renderer::light_from_world(map.light()));
+    const glm::dmat4 world_from_light = glm::inverse(optics::light_from_world(map.light()));
     std::vector<dvec3> points;
     for (const ReceiverPoint& point : receiver_points(map))
         points.emplace_back(world_from_light * glm::dvec4(point.position, 1.0));
@@ -63,7 +63,7 @@ Corners upright(double half_thickness) {
 // The documented limit: a sheet that the light's centre sees edge-on hides nothing, although rays find a
 // shadow. As thick as some texels, it is found.
 TEST_F(SoftShadowLimits, ASheetSeenEdgeOnHidesNothing) {
-    const RectangleLight light = light_above(3.0, 0.5, 0.5);
+    const Light light = light_above(3.0, 0.5, 0.5);
     const ShadowFrustum frustum = {0.01, {dvec2(-0.5), dvec2(0.5)}, {dvec2(-0.5), dvec2(0.5)}};
     const ShadowScene thin(upright(0.0), floor_of_4);
     const SoftShadowMap map = shadow_of(thin, light, sizes(128, 48), frustum);
@@ -100,7 +100,7 @@ TEST_F(SoftShadowLimits, LightAmongTheOccluders) {
     Corners both = below;
     const Corners above = square({0.0, 2.1, 0.0}, 0.7);
     both.insert(both.end(), above.begin(), above.end());
-    const RectangleLight light = light_above(2.0, 0.3, 0.3);
+    const Light light = light_above(2.0, 0.3, 0.3);
     const ShadowScene all(both, floor_of_4);
     const ShadowScene one(below, floor_of_4);
     const ShadowFrustum frustum = fit_shadow_frustum(light, one.occluders, one.receivers);
@@ -117,7 +117,7 @@ TEST_F(SoftShadowLimits, LightAmongTheOccluders) {
 TEST_F(SoftShadowLimits, AnOccluderAtTheLightIsCutAtTheNearDistance) {
     const double near_distance = 0.02;
     for (const double off : {0.5, 0.9, 1.1, 2.0}) {
-        const RectangleLight light = light_above(3.0, 0.1, 0.1);
+        const Light light = light_above(3.0, 0.1, 0.1);
         const ShadowScene scene(square({0.0, 3.0 - off * near_distance, 0.0}, 0.15), floor_of_4);
         ShadowFrustum frustum = fit_shadow_frustum(light, scene.occluders, scene.receivers, near_distance);
         const SoftShadowMap map = shadow_of(scene, light, sizes(64, 48), frustum);
@@ -130,7 +130,7 @@ TEST_F(SoftShadowLimits, AnOccluderAtTheLightIsCutAtTheNearDistance) {
 
 // The documented limit: what lies in the receiver itself hides nothing; lifted by little, it hides all.
 TEST_F(SoftShadowLimits, AnOccluderInTheReceiversPlaneHidesNothing) {
-    const RectangleLight light = light_above(3.0, 0.2, 0.2);
+    const Light light = light_above(3.0, 0.2, 0.2);
     for (const double lift : {0.0, 1e-3, 1e-2}) {
         const ShadowScene scene(square({0.0, lift, 0.0}, 0.5), floor_of_4);
         const SoftShadowMap map = shadow_of(scene, light, sizes(64, 64));
@@ -149,7 +149,7 @@ TEST_F(SoftShadowLimits, AnOccluderInTheReceiversPlaneHidesNothing) {
 TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
     const ShadowScene scene(box({-0.2, 0.0, -0.2}, {0.2, 0.5, 0.2}), square({0.0, 0.0, 0.0}, 6.0));
     // Along the floor: half of it lies behind the light.
-    const RectangleLight light = renderer::aimed_light({2.0, 0.3, 0.1}, {0.0, 0.3, 0.1}, 0.2, 0.2);
+    const Light light = optics::aimed_light({2.0, 0.3, 0.1}, {0.0, 0.3, 0.1}, 0.2, 0.2);
     const ShadowFrustum frustum = fit_shadow_frustum(light, scene.occluders, scene.receivers);
     EXPECT_LE(std::max(std::abs(frustum.receivers.low.y), std::abs(frustum.receivers.high.y)),
               renderer::max_shadow_tangent);
@@ -162,7 +162,7 @@ TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
     EXPECT_GT(error.shadowed, 500U);
 
     renderer::SoftShadowRenderer pictures(scene.scene, scene.whole, {false, true}, {true, false});
-    renderer::SoftShadowView view;
+    renderer::View view;
     view.width = view.height = 96;
     view.camera = {.eye = {0.0, 12.0, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0.0, 0.0, -1.0}, .yfov = 0.9};
     view.light = light;
@@ -180,8 +180,8 @@ TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
 }
 
 /// From under the ball: of all that is in the scene, the floor is the furthest.
-renderer::SoftShadowView from_under_the_ball() {
-    renderer::SoftShadowView view;
+renderer::View from_under_the_ball() {
+    renderer::View view;
     view.width = view.height = 80;
     view.camera = {.eye = {0.0, 0.1, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0.0, 0.0, -1.0}, .yfov = 2.9};
     return view;
@@ -192,7 +192,7 @@ renderer::SoftShadowView from_under_the_ball() {
 TEST_F(SoftShadowLimits, AnEyeAmongTheOccludersSeesTheFurthestReceiver) {
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 2), floor_of_4);
     renderer::SoftShadowRenderer pictures(scene.scene, scene.whole, {false, true}, {true, false});
-    renderer::SoftShadowView view = from_under_the_ball();
+    renderer::View view = from_under_the_ball();
     view.light = light_above(3.0, 0.2, 0.2);
     for (const float visible : pictures.render(view).visible)
         ASSERT_GE(visible, 0.0F) << "the floor is not there";
@@ -201,13 +201,12 @@ TEST_F(SoftShadowLimits, AnEyeAmongTheOccludersSeesTheFurthestReceiver) {
 // One map has one light; what two give is what their maps give, added up.
 TEST_F(SoftShadowLimits, MoreThanOneLight) {
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 4), floor_of_4);
-    renderer::SoftShadowView view = from_under_the_ball();
-    const std::array<RectangleLight, 2> lights = {
-        renderer::aimed_light({1.2, 3.0, 0.3}, {0.0, 0.5, 0.0}, 0.4, 0.4),
-        renderer::aimed_light({-0.9, 2.5, -0.8}, {0.0, 0.5, 0.0}, 0.6, 0.3)};
+    renderer::View view = from_under_the_ball();
+    const std::array<Light, 2> lights = {optics::aimed_light({1.2, 3.0, 0.3}, {0.0, 0.5, 0.0}, 0.4, 0.4),
+                                         optics::aimed_light({-0.9, 2.5, -0.8}, {0.0, 0.5, 0.0}, 0.6, 0.3)};
     renderer::SoftShadowRenderer pictures(scene.scene, scene.whole, {false, true}, {true, false});
     std::vector<double> sum, truth;
-    for (const RectangleLight& light : lights) {
+    for (const Light& light : lights) {
         view.light = light;
         const renderer::SoftShadowPicture picture = pictures.render(view);
         std::vector<dvec3> points;

@@ -18,9 +18,9 @@ namespace {
 
 using glm::dvec2;
 using glm::dvec3;
+using optics::half_size;
+using optics::Light;
 using renderer::fit_shadow_frustum;
-using renderer::half_size;
-using renderer::RectangleLight;
 using renderer::ShadowFormat;
 using renderer::ShadowFrustum;
 using renderer::ShadowMesh;
@@ -54,16 +54,15 @@ std::vector<double> exact_past(const std::vector<ReceiverPoint>& points, const s
 }
 
 /// By Embree, to a standard error of 0.004.
-std::vector<double> sampled(const ShadowScene& scene, const RectangleLight& light,
+std::vector<double> sampled(const ShadowScene& scene, const Light& light,
                             const std::vector<ReceiverPoint>& points) {
     const reference::ImageTracer tracer(scene.scene, scene.occluders);
-    const glm::dmat4 world_from_light = glm::inverse(renderer::light_from_world(light));
+    const glm::dmat4 world_from_light = glm::inverse(optics::light_from_world(light));
     std::vector<dvec3> world;
     for (const ReceiverPoint& point : points)
         world.emplace_back(world_from_light * glm::dvec4(point.position, 1.0));
     const auto visibilities = reference::area_light_visibility(
-        tracer, world, {}, {.centre = light.centre, .half_u = light.half_u, .half_v = light.half_v},
-        {.standard_error = 0.004, .most_samples = 4096});
+        tracer, world, {}, light, {.standard_error = 0.004, .most_samples = 4096});
     std::vector<double> truth;
     for (const reference::LightVisibility& visibility : visibilities)
         truth.push_back(visibility.visible);
@@ -109,7 +108,7 @@ void expect_depths(const renderer::ShadowMapValues& map, const renderer::ShadowW
 // The maps are what rays from the light's centre meet, first and last.
 TEST_F(SoftShadow, DepthMapsAreWhatTheLightsCentreSees) {
     const ShadowScene scene(ball({0.2, 1.0, -0.1}, 0.6, 3), floor_of_4);
-    const RectangleLight light = renderer::aimed_light({1.0, 3.5, 0.7}, {0.1, 0.9, 0.0}, 0.5, 0.3);
+    const Light light = optics::aimed_light({1.0, 3.5, 0.7}, {0.1, 0.9, 0.0}, 0.5, 0.3);
     const SoftShadowMap map = shadow_of(scene, light, sizes(48, 40, ShadowPasses::two));
     const double near = map.frustum().near_distance;
     expect_depths(map.occluder_inverse_depths(0), map.frustum().occluders,
@@ -123,7 +122,7 @@ TEST_F(SoftShadow, DepthMapsAreWhatTheLightsCentreSees) {
 struct Setting {
     std::string name;
     ShadowScene scene;
-    RectangleLight light;
+    Light light;
     SoftShadowOptions options;
 };
 
@@ -134,7 +133,7 @@ std::vector<Setting> settings() {
          {square({0.8, 0.7, 0.5}, 0.6), quad({-2, 0, -2}, {-2, 0, 2}, {-1, 1.6, 2}, {-1, 1.6, -2})})
         steps.insert(steps.end(), more.begin(), more.end());
     std::vector<Setting> all;
-    const RectangleLight slanted = renderer::aimed_light({1.2, 3.0, 0.8}, {0.0, 0.6, 0.0}, 0.8, 0.4);
+    const Light slanted = optics::aimed_light({1.2, 3.0, 0.8}, {0.0, 0.6, 0.0}, 0.8, 0.4);
     all.push_back({"ball over steps",
                    {ball({0.0, 0.9, 0.0}, 0.5, 3), steps},
                    slanted,
@@ -201,7 +200,7 @@ TEST_F(SoftShadow, PenumbraExtentsHoldAllThatAPatchCanDarken) {
 TEST_F(SoftShadow, AlignedSquareIsTheClosedForm) {
     const Corners occluder = square({0.1, 1.0, -0.2}, 0.5);
     const ShadowScene scene(occluder, floor_of_4);
-    const RectangleLight light = light_above(3.0, 0.4, 0.25);
+    const Light light = light_above(3.0, 0.4, 0.25);
     for (const int size : {1, 7, 32, 100}) {
         const SoftShadowMap map = shadow_of(scene, light, sizes(size, 64));
         EXPECT_EQ(map.statistics().micro_patches, std::uint64_t(size * size));
@@ -217,7 +216,7 @@ TEST_F(SoftShadow, AlignedSquareIsTheClosedForm) {
 TEST_F(SoftShadow, ErrorFallsWithTheSizeOfTheOccluderMap) {
     const Corners occluder = square({0.1, 1.0, -0.2}, 0.5, 0.3);
     const ShadowScene scene(occluder, floor_of_4);
-    const RectangleLight light = light_above(3.0, 0.3, 0.3);
+    const Light light = light_above(3.0, 0.3, 0.3);
     double before = 1.0;
     for (const int size : {8, 24, 72, 216}) {
         const SoftShadowMap map = shadow_of(scene, light, sizes(size, 48));
@@ -234,7 +233,7 @@ TEST_F(SoftShadow, ErrorFallsWithTheSizeOfTheOccluderMap) {
 TEST_F(SoftShadow, TinyLightGivesTheHardShadow) {
     const Corners occluder = square({0.1, 1.0, -0.2}, 0.5);
     const ShadowScene scene(occluder, floor_of_4);
-    const RectangleLight light = light_above(3.0, 1e-6, 1e-6);
+    const Light light = light_above(3.0, 1e-6, 1e-6);
     ShadowFrustum frustum = fit_shadow_frustum(light, scene.occluders, scene.receivers);
     frustum.receivers = {dvec2(-0.6), dvec2(0.6)};
     const SoftShadowMap map = shadow_of(scene, light, sizes(64, 97), frustum);
@@ -254,7 +253,7 @@ TEST_F(SoftShadow, TinyLightGivesTheHardShadow) {
 struct OneAndTwo {
     ShadowError one, two;
 };
-OneAndTwo errors_of_passes(const ShadowScene& scene, const RectangleLight& light) {
+OneAndTwo errors_of_passes(const ShadowScene& scene, const Light& light) {
     const SoftShadowMap one = shadow_of(scene, light, sizes(96, 40));
     const SoftShadowMap two = shadow_of(scene, light, sizes(96, 40, ShadowPasses::two));
     EXPECT_EQ(two.statistics().micro_patches, 2 * one.statistics().micro_patches);
@@ -264,8 +263,8 @@ OneAndTwo errors_of_passes(const ShadowScene& scene, const RectangleLight& light
 
 // Of a thick occluder the closest faces hide too little from a receiver aside (section 3.5).
 TEST_F(SoftShadow, TwoPassesBeatOneForAThickOccluder) {
-    const RectangleLight above = renderer::aimed_light({0.0, 3.0, 0.0}, {0.0, 0.4, 0.0}, 0.6, 0.6);
-    const RectangleLight aside = renderer::aimed_light({1.5, 2.6, 0.4}, {0.0, 0.4, 0.0}, 0.6, 0.6);
+    const Light above = optics::aimed_light({0.0, 3.0, 0.0}, {0.0, 0.4, 0.0}, 0.6, 0.6);
+    const Light aside = optics::aimed_light({1.5, 2.6, 0.4}, {0.0, 0.4, 0.0}, 0.6, 0.6);
     const ShadowScene round(ball({0.0, 0.8, 0.0}, 0.5, 4), floor_of_4);
     const ShadowScene edged(box({-0.3, 0.2, -0.3}, {0.3, 1.4, 0.3}), floor_of_4);
     for (const auto& [name, scene, light] :
@@ -291,7 +290,7 @@ TEST_F(SoftShadow, SteepWallsHideTooMuch) {
 // A sheet has one side: its second map is its first.
 TEST_F(SoftShadow, TwoPassesOfASheetAreOnePass) {
     const ShadowScene scene(square({0.1, 1.0, -0.2}, 0.5, 0.4), floor_of_4);
-    const RectangleLight light = light_above(3.0, 0.3, 0.3);
+    const Light light = light_above(3.0, 0.3, 0.3);
     EXPECT_EQ(shadow_of(scene, light, sizes(50, 40)).visible().values,
               shadow_of(scene, light, sizes(50, 40, ShadowPasses::two)).visible().values);
 }
@@ -299,7 +298,7 @@ TEST_F(SoftShadow, TwoPassesOfASheetAreOnePass) {
 // Against rays, for a curved occluder: what Atty et al. (figure 17) call a few percent.
 TEST_F(SoftShadow, BallIsNearTheTruth) {
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.5, 4), floor_of_4);
-    const RectangleLight light = renderer::aimed_light({0.5, 3.0, 0.3}, {0.0, 0.5, 0.0}, 0.6, 0.6);
+    const Light light = optics::aimed_light({0.5, 3.0, 0.3}, {0.0, 0.5, 0.0}, 0.6, 0.6);
     const SoftShadowMap map = shadow_of(scene, light, sizes(128, 48, ShadowPasses::two));
     const std::vector<ReceiverPoint> points = receiver_points(map);
     const ShadowError error = error_of(points, sampled(scene, light, points));
@@ -308,7 +307,7 @@ TEST_F(SoftShadow, BallIsNearTheTruth) {
 }
 
 /// How far a format is off FP32, in the worst texel.
-double deviation(const ShadowScene& scene, const RectangleLight& light, int size, ShadowFormat format,
+double deviation(const ShadowScene& scene, const Light& light, int size, ShadowFormat format,
                  std::uint64_t* batches = nullptr) {
     const SoftShadowMap exact = shadow_of(scene, light, sizes(size, 32));
     const SoftShadowMap map = shadow_of(scene, light, sizes(size, 32, ShadowPasses::one, format));
@@ -327,7 +326,7 @@ double deviation(const ShadowScene& scene, const RectangleLight& light, int size
 // square is 4 lights wide as seen from the floor: a patch is 1/32 of the light at 128 texels, 1/128 at 512.
 TEST_F(SoftShadow, Fp16HoldsAt128AndBreaksAt512UnlessInBatches) {
     const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.5), floor_of_4);
-    const RectangleLight light = light_above(2.0, 0.25, 0.25);
+    const Light light = light_above(2.0, 0.25, 0.25);
     std::uint64_t batches = 0;
     const double fp16_at_128 = deviation(scene, light, 128, ShadowFormat::fp16);
     const double fp16_at_512 = deviation(scene, light, 512, ShadowFormat::fp16);
@@ -344,7 +343,7 @@ TEST_F(SoftShadow, Fp16HoldsAt128AndBreaksAt512UnlessInBatches) {
 
 TEST_F(SoftShadow, IsTheSameBitForBitEveryTime) {
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.5, 4), floor_of_4);
-    const RectangleLight light = light_above(3.0, 0.5, 0.5);
+    const Light light = light_above(3.0, 0.5, 0.5);
     const SoftShadowOptions options = sizes(100, 60, ShadowPasses::two, ShadowFormat::fp16_batches);
     const ShadowMesh occluders(scene.scene, scene.occluders);
     const ShadowMesh receivers(scene.scene, scene.receivers);
@@ -360,7 +359,7 @@ TEST_F(SoftShadow, IsTheSameBitForBitEveryTime) {
 // Contact: under the box the floor is dark, right beside it half dark or more, and no light leaks between.
 TEST_F(SoftShadow, OccluderThatTouchesTheReceiverShadowsUpToTheContact) {
     const ShadowScene scene(box({-0.5, 0.0, -0.5}, {0.5, 0.5, 0.5}), floor_of_4);
-    const RectangleLight light = light_above(3.0, 0.3, 0.3);
+    const Light light = light_above(3.0, 0.3, 0.3);
     const SoftShadowMap map = shadow_of(scene, light, sizes(128, 64, ShadowPasses::two));
     int under = 0;
     for (const ReceiverPoint& point : receiver_points(map)) {
@@ -374,7 +373,7 @@ TEST_F(SoftShadow, OccluderThatTouchesTheReceiverShadowsUpToTheContact) {
 // A million units from the world's origin floats hold 1/16 of a unit: all sums of places are in double.
 TEST_F(SoftShadow, FarFromTheOriginIsAsNear) {
     ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.5, 3), floor_of_4);
-    RectangleLight light = light_above(3.0, 0.3, 0.2);
+    Light light = light_above(3.0, 0.3, 0.2);
     const ShadowFrustum frustum = {0.01, {dvec2(-0.3), dvec2(0.3)}, {dvec2(-0.4), dvec2(0.4)}};
     const std::vector<float> near = shadow_of(scene, light, sizes(50, 40), frustum).visible().values;
     const dvec3 away(1e6, -2e6, 3e6);
@@ -383,7 +382,7 @@ TEST_F(SoftShadow, FarFromTheOriginIsAsNear) {
     scene.whole = scenes::take_snapshot(scene.scene);
     scene.occluders = scenes::part_of(scene.whole, {false, true});
     scene.receivers = scenes::part_of(scene.whole, {true, false});
-    light.centre += away;
+    light.position += away;
     const std::vector<float> far = shadow_of(scene, light, sizes(50, 40), frustum).visible().values;
     double greatest = 0.0;
     for (std::size_t i = 0; i < near.size(); ++i)
@@ -430,7 +429,7 @@ TEST_F(SoftShadow, OccludersBehindTheLightOrTheReceiverHideNothing) {
 // The documented limit: the part of a post that reaches through the light's plane is cut at the near
 // distance, and the rest shadows as a post that ends there would.
 TEST_F(SoftShadow, OccluderThroughTheLightIsCutAtTheNearDistance) {
-    const RectangleLight light = light_above(3.0, 0.3, 0.3);
+    const Light light = light_above(3.0, 0.3, 0.3);
     const auto near_2 = [&](const ShadowScene& scene) {
         ShadowFrustum frustum = fit_shadow_frustum(light, scene.occluders, scene.receivers, 2.0);
         frustum.occluders = {dvec2(-0.25), dvec2(0.25)};
@@ -458,7 +457,7 @@ TEST_F(SoftShadow, OccluderThroughTheLightIsCutAtTheNearDistance) {
 // rays.
 TEST_F(SoftShadow, GrazingLight) {
     const ShadowScene scene(box({-0.2, 0.0, -0.2}, {0.2, 0.6, 0.2}), floor_of_4);
-    const RectangleLight light = renderer::aimed_light({3.0, 0.5, 0.2}, {0.0, 0.1, 0.0}, 0.2, 0.2);
+    const Light light = optics::aimed_light({3.0, 0.5, 0.2}, {0.0, 0.1, 0.0}, 0.2, 0.2);
     const SoftShadowMap map = shadow_of(scene, light, sizes(128, 48, ShadowPasses::two));
     const std::vector<ReceiverPoint> points = receiver_points(map);
     const ShadowError error = error_of(points, sampled(scene, light, points));
@@ -468,7 +467,7 @@ TEST_F(SoftShadow, GrazingLight) {
 
 TEST_F(SoftShadow, RefusesWhatIsNoLightNoMapAndNoFrustum) {
     const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.5), floor_of_4);
-    const RectangleLight light = light_above(3.0, 0.3, 0.3);
+    const Light light = light_above(3.0, 0.3, 0.3);
     const auto fault_of = [](const auto& call) {
         try {
             call();
@@ -480,7 +479,7 @@ TEST_F(SoftShadow, RefusesWhatIsNoLightNoMapAndNoFrustum) {
     EXPECT_EQ(fault_of([] { SoftShadowMap({.occluder_size = 0}); }), "usage");
     EXPECT_EQ(fault_of([] { SoftShadowMap({.receiver_size = 2049}); }), "usage");
     EXPECT_EQ(fault_of([&] { (void)shadow_of(scene, light_above(3.0, 0.0, 0.3), {}); }), "usage");
-    RectangleLight skewed = light;
+    Light skewed = light;
     skewed.half_v = {0.1, 0.0, 0.3};
     EXPECT_EQ(fault_of([&] { (void)shadow_of(scene, skewed, {}); }), "usage");
     ShadowFrustum frustum = fit_shadow_frustum(light, scene.occluders, scene.receivers);

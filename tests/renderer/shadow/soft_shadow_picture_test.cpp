@@ -18,10 +18,10 @@ namespace cairn::test {
 namespace {
 
 using glm::dvec3;
-using renderer::RectangleLight;
+using optics::Light;
 using renderer::SoftShadowPicture;
 using renderer::SoftShadowRenderer;
-using renderer::SoftShadowView;
+using renderer::View;
 
 class SoftShadowPictures : public GlTest {};
 
@@ -35,8 +35,8 @@ SoftShadowRenderer renderer_of(const ShadowScene& scene, const renderer::SoftSha
     return SoftShadowRenderer(scene.scene, scene.whole, only(1, 2), only(0, 2), options);
 }
 
-SoftShadowView view_of(const RectangleLight& light) {
-    SoftShadowView view;
+View view_of(const Light& light) {
+    View view;
     view.width = 120;
     view.height = 90;
     view.camera = {.eye = {2.0, 3.0, 4.0}, .target = {0.0, 0.2, 0.0}, .up = {0, 1, 0}, .yfov = 0.8};
@@ -50,7 +50,7 @@ struct Truth {
     std::vector<double> visible;  ///< 1 where there is nothing
 };
 
-dvec3 direction_of(const SoftShadowView& view, int x, int y) {
+dvec3 direction_of(const View& view, int x, int y) {
     const dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
     const dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const double half = std::tan(0.5 * view.camera.yfov);
@@ -60,12 +60,11 @@ dvec3 direction_of(const SoftShadowView& view, int x, int y) {
                           above * half * glm::cross(right, forward));
 }
 
-Truth truth_of(const ShadowScene& scene, const SoftShadowView& view) {
+Truth truth_of(const ShadowScene& scene, const View& view) {
     const reference::ImageTracer all(scene.scene, scene.whole);
     const reference::ImageTracer occluders(scene.scene, scene.occluders);
     Truth truth;
-    truth.image = all.trace({view.camera.eye, view.camera.target, view.camera.up, view.camera.yfov}, {},
-                            view.width, view.height);
+    truth.image = all.trace(view.camera, {}, view.width, view.height);
     std::vector<dvec3> points;
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
@@ -75,9 +74,7 @@ Truth truth_of(const ShadowScene& scene, const SoftShadowView& view) {
         }
     }
     for (const reference::LightVisibility& visibility : reference::area_light_visibility(
-             occluders, points, {},
-             {.centre = view.light.centre, .half_u = view.light.half_u, .half_v = view.light.half_v},
-             {.standard_error = 0.006, .most_samples = 2048}))
+             occluders, points, {}, view.light, {.standard_error = 0.006, .most_samples = 2048}))
         truth.visible.push_back(visibility.visible);
     return truth;
 }
@@ -87,7 +84,7 @@ TEST_F(SoftShadowPictures, PixelsSeeTheLightThatRaysSee) {
     const Corners slope = quad({-1.5, 0, -1.5}, {1.5, 0, -1.5}, {1.5, 1.0, -2.2}, {-1.5, 1.0, -2.2});
     floor.insert(floor.end(), slope.begin(), slope.end());
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 4), floor);
-    const SoftShadowView view = view_of(renderer::aimed_light({0.6, 3.0, 1.6}, {0.0, 0.5, 0.0}, 0.5, 0.5));
+    const View view = view_of(optics::aimed_light({0.6, 3.0, 1.6}, {0.0, 0.5, 0.0}, 0.5, 0.5));
     SoftShadowRenderer shadows = renderer_of(scene);
     const SoftShadowPicture picture = shadows.render(view);
     const Truth truth = truth_of(scene, view);
@@ -115,7 +112,7 @@ TEST_F(SoftShadowPictures, PixelsSeeTheLightThatRaysSee) {
 
 TEST_F(SoftShadowPictures, ShadowIsDarkerAndTheRestIsAsWithoutIt) {
     const ShadowScene scene(square({0.0, 0.8, 0.0}, 0.4), square({0.0, 0.0, 0.0}, 1.5));
-    const SoftShadowView view = view_of(light_above(3.0, 0.3, 0.3));
+    const View view = view_of(light_above(3.0, 0.3, 0.3));
     SoftShadowRenderer shadows = renderer_of(scene);
     const SoftShadowPicture picture = shadows.render(view);
     const SoftShadowPicture bare =
@@ -139,10 +136,10 @@ TEST_F(SoftShadowPictures, ShadowIsDarkerAndTheRestIsAsWithoutIt) {
 // A window around a corner of the floor: what lies outside is lit, as documented.
 TEST_F(SoftShadowPictures, OutsideTheLightsWindowAllIsLit) {
     const ShadowScene scene(square({0.0, 0.8, 0.0}, 0.4), square({0.0, 0.0, 0.0}, 1.5));
-    SoftShadowView view = view_of(light_above(3.0, 0.3, 0.3));
-    view.frustum = renderer::ShadowFrustum{0.1, {{-0.3, -0.3}, {0.3, 0.3}}, {{0.0, 0.0}, {0.5, 0.5}}};
+    const View view = view_of(light_above(3.0, 0.3, 0.3));
+    const renderer::ShadowFrustum frustum{0.1, {{-0.3, -0.3}, {0.3, 0.3}}, {{0.0, 0.0}, {0.5, 0.5}}};
     SoftShadowRenderer shadows = renderer_of(scene);
-    const SoftShadowPicture picture = shadows.render(view);
+    const SoftShadowPicture picture = shadows.render(view, frustum);
     int inside = 0;
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
@@ -180,7 +177,7 @@ ShadowScene half_masked() {
 
 TEST_F(SoftShadowPictures, HolesOfAnAlphaMaskLetTheLightThrough) {
     const ShadowScene scene = half_masked();
-    const RectangleLight light = light_above(3.0, 0.01, 0.01);
+    const Light light = light_above(3.0, 0.01, 0.01);
     const renderer::SoftShadowMap map = shadow_of(scene, light, {.occluder_size = 64, .receiver_size = 64});
     EXPECT_EQ(map.statistics().micro_patches, 2U * 32U * 64U);
     for (const ReceiverPoint& point : receiver_points(map)) {
@@ -192,7 +189,7 @@ TEST_F(SoftShadowPictures, HolesOfAnAlphaMaskLetTheLightThrough) {
     }
     // The hole shows the floor, the rest is red.
     SoftShadowRenderer shadows = renderer_of(scene);
-    SoftShadowView view = view_of(light);
+    View view = view_of(light);
     view.camera = {.eye = {0.0, 4.0, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0, 0, -1}, .yfov = 0.5};
     const SoftShadowPicture picture = shadows.render(view);
     const auto at = [&](int x) { return std::size_t(45 * view.width + x); };
@@ -215,7 +212,7 @@ TEST_F(SoftShadowPictures, RefusesNodesThatAreBothAndPicturesThatAreNone) {
         (void)SoftShadowRenderer(scene.scene, scene.whole, scenes::NodeSelection(2, true), only(0, 2));
     }));
     SoftShadowRenderer shadows = renderer_of(scene);
-    SoftShadowView view = view_of(light_above(3.0, 0.3, 0.3));
+    View view = view_of(light_above(3.0, 0.3, 0.3));
     view.width = 0;
     EXPECT_TRUE(refused([&] { (void)shadows.render(view); }));
 }
@@ -254,18 +251,17 @@ TEST_F(SoftShadowPictures, BunnyOnTheFloorIsNearTheTruth) {
         }
     }
     const ShadowScene scene(bunny, square({0.0, 0.0, 0.0}, 2.0));
-    const RectangleLight light = renderer::aimed_light({1.5, 2.6, 0.4}, {0.0, 0.4, 0.0}, 0.4, 0.4);
+    const Light light = optics::aimed_light({1.5, 2.6, 0.4}, {0.0, 0.4, 0.0}, 0.4, 0.4);
     const renderer::SoftShadowMap map = shadow_of(scene, light, {.occluder_size = 128, .receiver_size = 48});
     const std::vector<ReceiverPoint> points = receiver_points(map);
     const reference::ImageTracer tracer(scene.scene, scene.occluders);
-    const glm::dmat4 world_from_light = glm::inverse(renderer::light_from_world(light));
+    const glm::dmat4 world_from_light = glm::inverse(optics::light_from_world(light));
     std::vector<dvec3> world;
     for (const ReceiverPoint& point : points)
         world.emplace_back(world_from_light * glm::dvec4(point.position, 1.0));
     std::vector<double> truth;
     for (const reference::LightVisibility& visibility : reference::area_light_visibility(
-             tracer, world, {}, {.centre = light.centre, .half_u = light.half_u, .half_v = light.half_v},
-             {.standard_error = 0.005, .most_samples = 4096}))
+             tracer, world, {}, light, {.standard_error = 0.005, .most_samples = 4096}))
         truth.push_back(visibility.visible);
     const ShadowError error = error_of(points, truth);
     EXPECT_LT(error.mean, 0.03) << error.worst;

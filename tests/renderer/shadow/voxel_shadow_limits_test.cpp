@@ -113,20 +113,14 @@ public:
         each(shares(view), view, judge);
     }
     /// What the floor sees of the view's light past the triangles, pixel by pixel.
-    [[nodiscard]] std::vector<double> truth(const View& view, reference::AreaLight::Shape shape) const {
+    [[nodiscard]] std::vector<double> truth(const View& view) const {
         std::vector<dvec3> points;
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x)
                 points.push_back(floor_point(view, x, y));
         std::vector<double> seen;
-        for (const reference::LightVisibility& there :
-             reference::area_light_visibility(tracer_, points, {},
-                                              {.shape = shape,
-                                              .centre = view.light.position,
-                                              .half_u = view.light.half_u,
-                                              .half_v = view.light.half_v,
-                                              .radius = view.light.radius},
-                                              {.standard_error = 0.01, .most_samples = 1024}))
+        for (const reference::LightVisibility& there : reference::area_light_visibility(
+                 tracer_, points, {}, view.light, {.standard_error = 0.01, .most_samples = 1024}))
             seen.push_back(there.visible);
         return seen;
     }
@@ -241,7 +235,7 @@ TEST_F(VoxelShadowLimits, LightThatTouchesItsOccluder) {
     View view = lit_from({0.0, 2.0 - 0.15, 0.0});
     view.light.radius = 0.15;
     view.shadow_rays = 64;
-    const std::vector<double> truth = scene.truth(view, reference::AreaLight::Shape::sphere);
+    const std::vector<double> truth = scene.truth(view);
     const optics::LightShares found = scene.shares(view);
     double sum = 0.0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -427,8 +421,8 @@ TEST_F(VoxelShadowLimits, MoreThanOneLight) {
     const optics::LightShares of_whole = scene.shares(whole);
     const optics::LightShares of_left = scene.shares(left);
     const optics::LightShares of_right = scene.shares(right);
-    const std::vector<double> truth_left = scene.truth(left, reference::AreaLight::Shape::rectangle);
-    const std::vector<double> truth_right = scene.truth(right, reference::AreaLight::Shape::rectangle);
+    const std::vector<double> truth_left = scene.truth(left);
+    const std::vector<double> truth_right = scene.truth(right);
     double squares = 0.0;
     int partly = 0;
     for (std::size_t i = 0; i < truth_left.size(); ++i) {
