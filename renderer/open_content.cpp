@@ -13,7 +13,7 @@
 #include "renderer/produce/surface_content.h"
 #include "renderer/produce/volume_content.h"
 #include "scenes/load.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/pool.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {

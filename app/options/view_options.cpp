@@ -13,7 +13,7 @@
 #include "app/options/voxel_rows.h"
 #include "base/error.h"
 #include "renderer/pool/tree_options.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/pool.h"
 
 namespace cairn::app {
 namespace {

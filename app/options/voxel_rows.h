@@ -8,7 +8,7 @@
 #include "app/options/option_table.h"
 #include "renderer/march/march_options.h"
 #include "renderer/produce/transfer_function.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/volume.h"
 
 /// Rows of the options that say how voxels are rendered, for every verb that has them. `member` takes the
 /// options and gives back the value in them, as in option_table.h.

@@ -8,7 +8,6 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "renderer/march/march_view.h"
-#include "shaders/interop/config.h"
 
 namespace cairn::bench {
 
@@ -40,9 +39,8 @@ interop::MarchView marched_view(const renderer::View& view, const renderer::Cont
     renderer::View primary = view;
     primary.shadow.kind = renderer::ShadowQuality::Kind::none;
     interop::MarchView marched = renderer::march_view(primary, content.grid(), shape, nullptr);
-    marched.surface_color = glm::vec4(content.uniform_color(), 1.0F);
-    marched.band =
-        glm::ivec4(0, view.size.height, SHOW_SURFACE, int(renderer::background_pixel(view.background)));
+    marched.surface_color = content.uniform_color();
+    marched.shown = SHOW_SURFACE;
     return marched;
 }
 
@@ -105,7 +103,7 @@ renderer::PassResult VisibleBricks::march(renderer::Marcher& marcher, PassKind k
 /// Marches the picture through what is there, for the depths where its rays end.
 void VisibleBricks::draw() {
     interop::MarchView view = view_;
-    view.band.w = 0;  // rays get through where nothing is
+    view.background_pixel = 0;  // rays get through where nothing is
     saturate_.begin_frame(view, cache_.tree(), cache_.pool(), false);
     while (!march(saturate_, PassKind::stand_in).done()) {
     }
@@ -142,7 +140,7 @@ void VisibleBricks::show() {
         result_.bricks_used += stamp != 0 ? 1 : 0;
     while (!pass.done())
         pass = march(picture_, PassKind::stand_in);
-    result_.image = {view_.size_shadow.x, view_.size_shadow.y, picture_.read_image()};
+    result_.image = {view_.width, view_.height, picture_.read_image()};
 }
 
 Visibility VisibleBricks::by_frustum() {

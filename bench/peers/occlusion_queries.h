@@ -14,8 +14,9 @@
 #include "renderer/pool/tree_shape.h"
 #include "renderer/produce/content.h"
 #include "renderer/produce/tile_cache.h"
+#include "renderer/renderer.h"
 #include "renderer/view/view.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
 
 namespace cairn::bench {
 

@@ -6,7 +6,6 @@
 #include "bench/peers/cpu_row_span.h"
 #include "bench/peers/three_directions.h"
 #include "gl/context.h"
-#include "shaders/interop/types.h"
 #include "voxelizer/files/voxel_tiles.h"
 #include "voxelizer/methods/pyramid_builder.h"
 #include "voxelizer/methods/voxelize_tiles.h"
@@ -14,6 +13,7 @@
 #include "voxelizer/surface/triangle_index.h"
 #ifdef CAIRN_BENCH_OPENVDB
 #include "bench/peers/openvdb_mesh.h"
+#include "shaders/interop/surface.h"
 #endif
 
 namespace cairn::bench {
@@ -76,7 +76,7 @@ VoxelContender openvdb(const VoxelCase& voxel_case) {
         for (const auto& p : chunk.positions)
             points.emplace_back(glm::dvec3(p[0], p[1], p[2]) * unit - glm::dvec3(voxel_case.region.origin));
         for (const interop::SurfaceTriangle& triangle : chunk.triangles)
-            triangles.push_back(first + glm::uvec3(triangle.vertices_material));
+            triangles.push_back(first + triangle.vertices);
     }
     const OpenVdbMesh mesh(points, triangles);
     return {"openvdb", on_cpu, [mesh, size = voxel_case.region.size](voxelizer::BitGrid* voxels) {

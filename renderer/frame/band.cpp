@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "renderer/march/march_view.h"
 #include "renderer/mesh/mesh_raster.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/mesh.h"
 
 namespace cairn::renderer {
 
@@ -23,7 +23,7 @@ Band make_band(const View& view, Content& content, const TreeShape& shape) {
         drop_empty(band.windows, shape, content.oracle());
     }
     band.view = march_view(view, grid, shape, band.windows.empty() ? nullptr : &band.windows.back());
-    band.view.surface_color = glm::vec4(content.uniform_color(), 1.0F);
+    band.view.surface_color = content.uniform_color();
     if (band.windows.empty()) return band;
     const Place light = place_of(view, view.light.position, grid);
     band.marched_windows =
@@ -33,12 +33,15 @@ Band make_band(const View& view, Content& content, const TreeShape& shape) {
 }
 
 void set_rows(Band& band, Rows rows, int shown, std::uint32_t background) {
-    band.view.band = glm::ivec4(rows.first, rows.count, shown, int(background));
+    band.view.first_row = rows.first;
+    band.view.row_count = rows.count;
+    band.view.shown = shown;
+    band.view.background_pixel = background;
 }
 
 int draw_mix(Band& band, const Mix& mix, const voxelizer::Grid& grid, int row) {
     const MarchSpace space{grid.origin, grid.voxel_size};
-    int end = band.view.size_shadow.y;
+    int end = band.view.height;
     band.mix = MarchMix{};
     if (mix.meshes != nullptr) {
         const MeshSurface mesh = mix.meshes->draw_surface(band.view, space, row);

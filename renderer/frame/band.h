@@ -8,7 +8,8 @@
 #include "renderer/pool/tree_shape.h"
 #include "renderer/produce/content.h"
 #include "renderer/view/view.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 
@@ -26,7 +27,7 @@ struct Band {
 /// of detail of bricks without mips.
 [[nodiscard]] Band make_band(const View& view, Content& content, const TreeShape& shape);
 
-/// @param shown       SHOW_* of shaders/interop/config.h.
+/// @param shown       SHOW_* of shaders/interop/march.h.
 /// @param background  a pixel that shows nothing.
 void set_rows(Band& band, Rows rows, int shown, std::uint32_t background);
 

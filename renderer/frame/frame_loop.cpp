@@ -9,15 +9,15 @@
 
 #include "base/error.h"
 #include "renderer/frame/prefetch_view.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
 
 namespace cairn::renderer {
 namespace {
 
 ContentProgram program_of(const Content& content) {
     ContentProgram program = content.program();
-    if (content.has_constant()) program.defines.emplace_back("HAS_CONSTANT", "1");
-    if (content.has_low_frequency()) program.defines.emplace_back("HAS_FINAL", "1");
+    program.has_constant = content.has_constant();
+    program.has_final = content.has_low_frequency();
     return program;
 }
 
@@ -113,7 +113,7 @@ optics::Image FrameLoop::render_bands(const View& view, Rows rows, int shown,
 
 void FrameLoop::march_bands(Band& band, Rows rows, int shown, std::uint32_t background,
                             const std::function<Goal(int)>& goal_of, optics::Image& image) {
-    const int band_rows = Marcher::band_rows(band.view.size_shadow.x, band.view.size_shadow.y);
+    const int band_rows = Marcher::band_rows(band.view.width, band.view.height);
     const int end = rows.first + rows.count;
     int row = rows.first;
     while (row < end) {

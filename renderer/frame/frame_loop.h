@@ -67,7 +67,7 @@ public:
     [[nodiscard]] bool marches_surfaces() const { return marcher_.marches_surfaces(); }
 
     /// Rows of a picture, four bytes per pixel: RGBA8, or with SHOW_LIGHT the bits of a float.
-    /// @param shown  SHOW_* of shaders/interop/config.h.
+    /// @param shown  SHOW_* of shaders/interop/march.h.
     /// @param progress  called after each pass with the share of the picture's pixels that are done.
     /// @throws Error (Fault::usage) for a view, or rows, that cannot be.
     [[nodiscard]] optics::Image render(const View& view, Rows rows, int shown,

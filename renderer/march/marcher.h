@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -10,14 +10,19 @@
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "renderer/march/march_options.h"
+#include "renderer/march/march_programs.h"
 #include "renderer/march/query_buffer.h"
+#include "renderer/march/tile_blocks.h"
+#include "renderer/march/tile_queries.h"
+#include "renderer/march/traversal.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/round.h"
 #include "renderer/pool/tree.h"
 #include "renderer/produce/content_program.h"
 #include "renderer/produce/tile_query.h"
-#include "shaders/interop/config.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/tile_query.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 
@@ -67,7 +72,7 @@ public:
     /// for.
     [[nodiscard]] static int band_rows(int width, int height);
 
-    /// Sets the frame, or a band of it (`view.band`); buffers grow when the bands do.
+    /// Sets the frame, or a band of it (`view.first_row` and `row_count`); buffers grow when the bands do.
     /// @param is_blended  rays see two mips at once (LevelOfDetail::blended); the pool's bricks have mips.
     void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool, bool is_blended,
                      const MarchMix& mix = {});
@@ -82,7 +87,7 @@ public:
     [[nodiscard]] PassResult run_pass(Round round, const Tree& tree, const BrickPool& pool,
                                       PassKind kind = PassKind::patient);
 
-    [[nodiscard]] bool marches_surfaces() const { return content_.of_surfaces; }
+    [[nodiscard]] bool marches_surfaces() const { return content_.of_surfaces(); }
 
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
 
@@ -90,9 +95,8 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> read_image() const;
 
 private:
-    /// Built when a pass first asks for it.
-    [[nodiscard]] const gl::Program& primary_program(PassKind kind);
-    [[nodiscard]] const gl::Program& shadow_program(PassKind kind);
+    /// The program of the frame's rays.
+    [[nodiscard]] const gl::Program& program(RayKind rays, PassKind kind);
     struct Dispatch {
         const gl::Program& program;
         bool is_shadow = false;
@@ -101,15 +105,11 @@ private:
     void run(const Dispatch& dispatch, Round round, const BrickPool& pool, PassKind kind) const;
 
     MarchOptions options_;
-    gl::ShaderSource shaders_;
     ContentProgram content_;
-    gl::Defines defines_;
     void bind_mix() const;
     void set_mix(const gl::Program& program) const;
 
-    std::array<gl::Program, 32>
-        primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * meshes + 8 * proxy + 16 * BLENDED
-    std::array<gl::Program, 32> shadow_;  ///< PROGRESSIVE + 2 * meshes + 4 * soft + 8 * BLENDED + 16 * cones
+    gl::ProgramFamily<MarchVariant> programs_;
     gl::Buffer view_;
     gl::Buffer windows_;  ///< empty where the tree has none
     gl::Buffer shadow_ends_;

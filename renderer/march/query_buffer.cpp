@@ -5,8 +5,9 @@
 
 #include "base/error.h"
 #include "renderer/march/march_options.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/tile_query.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 namespace {

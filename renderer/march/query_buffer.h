@@ -14,7 +14,7 @@
 #include "renderer/march/tile_queries.h"
 #include "renderer/pool/round.h"
 #include "renderer/produce/tile_query.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
 
 namespace cairn::renderer {
 

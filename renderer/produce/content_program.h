@@ -3,19 +3,20 @@
 #include <functional>
 #include <string>
 
-#include "gl/shader_source.h"
-
 namespace cairn::renderer {
 
 /// How rays see a kind of content: the shaders that march it, and what they need beside the pools.
 struct ContentProgram {
     std::string primary = "march/primary.comp.glsl";
     std::string shadow = "march/shadow.comp.glsl";
-    gl::Defines defines;
+    /// Steps in which a ray crosses a voxel of a volume, [1, volume_most_steps]; 0: the content is a surface,
+    /// whose shadow rays know SHOW_LIGHT and cones.
+    int volume_steps = 0;
+    bool has_constant = false;  ///< tiles may hold one value that is not 0, without a brick
+    bool has_final = false;     ///< tiles may have nothing finer to show
     /// Called before each pass; may be empty.
-    std::function<void()> bind;
-    /// The content is a surface, whose shadow rays know SHOW_LIGHT and cones.
-    bool of_surfaces = true;
+    std::function<void()> bind = nullptr;
+    [[nodiscard]] bool of_surfaces() const { return volume_steps == 0; }
 };
 
 }  // namespace cairn::renderer

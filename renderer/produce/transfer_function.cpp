@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/volume.h"
 
 namespace cairn::renderer {
 namespace {

@@ -6,9 +6,7 @@
 #include <glad/gl.h>
 
 #include "base/error.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/volume.h"
 
 namespace cairn::renderer {
 

@@ -214,11 +214,10 @@ VolumeContent::VolumeContent(const VolumeShape& shape, std::shared_ptr<const Fie
       producer_(shape, *field_, test_) {}
 
 ContentProgram VolumeContent::program() const {
-    return {"march/volume.comp.glsl",
-            "march/volume_shadow.comp.glsl",
-            {{"VOLUME_STEPS", std::to_string(steps_per_voxel_)}},
-            [table = table_] { table->bind(); },
-            false};
+    return {.primary = "march/volume.comp.glsl",
+            .shadow = "march/volume_shadow.comp.glsl",
+            .volume_steps = steps_per_voxel_,
+            .bind = [table = table_] { table->bind(); }};
 }
 
 }  // namespace cairn::renderer

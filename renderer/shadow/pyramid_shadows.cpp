@@ -12,7 +12,8 @@
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/shadow/column_pyramid.h"
 #include "renderer/shadow/column_shadows.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/mesh.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
 #include "voxelizer/surface/moving_surface.h"
 
@@ -32,7 +33,6 @@ struct PyramidShadows::Impl {
     Impl(const voxelizer::Grid& shown_grid, const PyramidShadowOptions& options,
          const gl::ShaderSource& shaders)
         : grid(shown_grid),
-          shape(make_tree_shape(2, 8, options.resolution)),
           pyramid(options.resolution, shaders),
           shadows(pyramid, options.mask, shaders),
           voxelizer(shaders) {}
@@ -42,7 +42,6 @@ struct PyramidShadows::Impl {
     [[nodiscard]] std::vector<std::uint32_t> light(const View& view, int shown, ShadowTimes& times);
 
     voxelizer::Grid grid;
-    TreeShape shape;  ///< of the same voxels, for what a view is checked by
     ColumnPyramid pyramid;
     ColumnShadows shadows;
     voxelizer::ConservativeVoxelizer voxelizer;
@@ -66,15 +65,18 @@ void PyramidShadows::Impl::build_pyramid(ShadowTimes& times) {
 
 /// @param shown  SHOW_SURFACE or SHOW_LIGHT
 std::vector<std::uint32_t> PyramidShadows::Impl::light(const View& view, int shown, ShadowTimes& times) {
-    interop::MarchView marched = march_view(view, grid, shape, nullptr);
+    interop::MarchView marched = march_view(view, grid);
+    marched.shown = shown;
+    marched.background_pixel = 0;
     std::vector<std::uint32_t> pixels;
-    for (int row = 0; row < view.size.height; row += marched.band.y) {
+    for (int row = 0; row < view.size.height; row += marched.row_count) {
         const auto drawing = Clock::now();
         const MeshSurface mesh = raster->draw_surface(marched, {grid.origin, grid.voxel_size}, row);
         glFinish();
         times.raster_ms += milliseconds_since(drawing);
         const int end = std::min(mesh.first_row + mesh.rows, view.size.height);
-        marched.band = glm::ivec4(row, end - row, shown, 0);
+        marched.first_row = row;
+        marched.row_count = end - row;
         const auto band =
             shadows.light(marched, pyramid, {mesh.first_row, mesh.nearest, mesh.surface, MESH_OWN_HEIGHT});
         pixels.insert(pixels.end(), band.begin(), band.end());
@@ -120,7 +122,7 @@ void PyramidShadows::move_to(double seconds) {
 
 ShadowPicture PyramidShadows::render(const View& view, const ShadowRequest& request) {
     Impl& impl = *impl_;
-    check_view(view, impl.shape);
+    check_view(view);
     check_pyramid_view(view);
     const auto start = Clock::now();
     ShadowPicture picture;

@@ -9,7 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "gl/buffer_offset.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/shadow_map.h"
 
 namespace cairn::renderer {
 namespace {

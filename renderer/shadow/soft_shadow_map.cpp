@@ -12,8 +12,7 @@
 #include "gl/context.h"
 #include "gl/draw_state.h"
 #include "gl/timer.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "renderer/shadow/blend_state.h"
 
 namespace cairn::renderer {
 namespace {
@@ -43,7 +42,8 @@ gl::FramebufferHandle make_target(const gl::TextureHandle& first, const gl::Text
     glNamedFramebufferDrawBuffers(id, second != nullptr ? 2 : 1, buffers.data());
     if (glCheckNamedFramebufferStatus(id, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         throw Error(Fault::context, "soft shadow map",
-                    fmt::format("\"{}\" cannot draw to it", gl::driver_name()), "choose another ContextOptions::kind");
+                    fmt::format("\"{}\" cannot draw to it", gl::driver_name()),
+                    "choose another ContextOptions::kind");
     }
     return framebuffer;
 }

@@ -11,7 +11,7 @@
 #include "renderer/shadow/shadow_frustum.h"
 #include "renderer/shadow/shadow_mesh.h"
 #include "renderer/shadow/shadow_options.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/shadow_map.h"
 
 namespace cairn::renderer {
 

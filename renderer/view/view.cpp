@@ -8,7 +8,8 @@
 
 #include "base/error.h"
 #include "optics/srgb.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::renderer {
 

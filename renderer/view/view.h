@@ -108,10 +108,10 @@ struct Rows {
     bool operator==(const Rows&) const = default;
 };
 
-/// Checks what needs no tree: NaN in a shader is a picture that nobody can explain.
-/// @throws Error (Fault::usage) that names the field and its range.
+/// Checks a view that no tree is marched for: NaN in a shader is a picture that nobody can explain.
+/// @throws Error (Fault::usage) that names the field and its range; an anchor is an error too.
 void check_view(const View& view);
-/// Checks the anchor too.
+/// Checks a view of a tree, and that the tree has the tile of its anchor.
 /// @throws Error (Fault::usage) that names the field and its range.
 void check_view(const View& view, const TreeShape& shape);
 

@@ -1,4 +1,5 @@
 // What rays tell the cache: what they miss, and what they used.
+#include "interop/tile_query.h"
 
 // The number that a query is told by. Its twin is query_word() of renderer/march/query_buffer.h.
 uint query_word(uint entry, uint kind) {
@@ -8,16 +9,16 @@ uint query_word(uint entry, uint kind) {
     return 2u * entry + kind;
 }
 
-// The last resort of queries for which there is no room: without it the same ones might get it in each pass, and a ray whose
-// data was to come next lose what it had been given to those that ask in between.
+// The last resort of queries for which there is no room: without it the same ones might get it in each pass,
+// and a ray whose data was to come next lose what it had been given to those that ask in between.
 void keep_urgent(uint word, int rank) {
     const uint place = uint(QUERY_CAPACITY + QUERY_COUNTS + rank);
     if (queries[place] == 0u) atomicMax(queries[place], word + 1u);
 }
 
 #if TILE_BLOCKS
-// By blocks of pixels: each ray leaves the last tile that it missed, or else the last brick that it used (Crassin et al.
-// 2008, section 5.3).
+// By blocks of pixels: each ray leaves the last tile that it missed, or else the last brick that it used
+// (Crassin et al. 2008, section 5.3).
 uint tile_report = TILE_REPORT_NONE;
 
 void query(uint entry, uint kind, int rank) {

@@ -4,7 +4,7 @@
 
 #include <glad/gl.h>
 
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/pool.h"
 
 namespace cairn::test {
 namespace {

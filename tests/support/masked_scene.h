@@ -8,7 +8,6 @@
 
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
-#include "shaders/interop/types.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::test {

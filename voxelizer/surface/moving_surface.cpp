@@ -7,8 +7,8 @@
 #include "gl/limits.h"
 #include "gl/program.h"
 #include "scenes/pose.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/deform.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/moving_chunk.h"
 #include "voxelizer/surface/upload_array.h"
 

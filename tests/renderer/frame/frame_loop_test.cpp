@@ -9,7 +9,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
 #include "tests/support/box_content.h"
 #include "tests/support/gl_fixture.h"
 

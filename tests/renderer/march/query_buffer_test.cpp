@@ -15,7 +15,8 @@
 
 #include "base/error.h"
 #include "renderer/pool/tree_shape.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/tile_query.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/probe.h"
