@@ -18,7 +18,7 @@ reference::ShadedImage true_picture(const scenes::Scene& scene, const scenes::Sn
     shading.background = view.background;
     shading.shadows = view.shadow.kind != renderer::ShadowQuality::Kind::none;
     return reference::ImageTracer(scene, snapshot)
-        .shade(view.camera, view.light, shading, view.width, view.height, samples_per_side);
+        .shade(view.camera, view.light, shading, view.size.width, view.size.height, samples_per_side);
 }
 
 PictureErrors picture_errors(const optics::Image& ours, const reference::ShadedImage& truth) {
