@@ -6,17 +6,7 @@
 
 #include "base/error.h"
 #include "renderer/frame/frame_loop.h"
-#include "renderer/frame/prefetch_view.h"
-#include "renderer/march/march_view.h"
-#include "renderer/march/transfer_table.h"
-#include "renderer/mesh/mesh_raster.h"
-#include "renderer/produce/dense_field.h"
-#include "renderer/produce/surface_content.h"
-#include "renderer/produce/volume_content.h"
-#include "renderer/renderer_parts.h"
 #include "shaders/interop/march.h"
-#include "shaders/interop/pool.h"
-#include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double pixels_around = 1.0 / 64.0;
 constexpr GLsizei corners_a_box = 36;
 
-glm::vec3 per_unit(const glm::vec4& axis) {
+glm::vec3 per_unit(const glm::vec3& axis) {
     return glm::vec3(axis) / glm::dot(glm::vec3(axis), glm::vec3(axis));
 }
 

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "shaders/interop/grid.h"
 #include "shaders/interop/pool.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 

@@ -12,7 +12,6 @@
 #include "gl/context.h"
 #include "gl/draw_state.h"
 #include "gl/timer.h"
-#include "renderer/shadow/blend_state.h"
 
 namespace cairn::renderer {
 namespace {

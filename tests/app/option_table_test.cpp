@@ -20,6 +20,7 @@
 #include "base/error.h"
 #include "shaders/interop/pool.h"
 #include "shaders/interop/shadow_rays.h"
+#include "shaders/interop/volume.h"
 
 namespace cairn::test {
 namespace {

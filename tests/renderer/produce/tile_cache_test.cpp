@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "renderer/pool/brick_pool.h"
+#include "shaders/interop/pool.h"
 #include "tests/support/box_content.h"
 #include "tests/support/gl_fixture.h"
 
