@@ -37,6 +37,10 @@ set(cairn_public_headers
   renderer/produce/volume_field.h
   renderer/renderer.h
   renderer/renderer_options.h
+  renderer/shadow/column_mask.h
+  renderer/shadow/shadow_base.h
+  renderer/shadow/shadow_options.h
+  renderer/shadow_renderer.h
   renderer/view/view.h
   scenes/builtin/builtin.h
   scenes/load.h
