@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "gl/macro_check.h"
 #include "shaders/embedded.h"
 
 namespace cairn::gl {
@@ -20,6 +22,14 @@ std::optional<std::string_view> included_name(std::string_view line) {
     const std::size_t close = open == std::string_view::npos ? open : line.find('"', open + 1);
     if (close == std::string_view::npos) return std::nullopt;
     return line.substr(open + 1, close - open - 1);
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);)
+        lines.push_back(line);
+    return lines;
 }
 
 }  // namespace
@@ -38,7 +48,8 @@ std::optional<std::string> ShaderSource::text_of(std::string_view name) const {
     return std::nullopt;
 }
 
-void ShaderSource::append(std::string_view name, const std::string& from, ResolvedSource& out) const {
+void ShaderSource::append(std::string_view name, const std::string& from, MacroCheck& check,
+                          ResolvedSource& out) const {
     if (std::find(out.files.begin(), out.files.end(), name) != out.files.end()) return;
     const std::optional<std::string> text = text_of(name);
     if (!text) {
@@ -52,15 +63,19 @@ void ShaderSource::append(std::string_view name, const std::string& from, Resolv
     out.included_from.push_back(from);
     out.text += fmt::format("#line 1 {}\n", index);
 
-    std::istringstream lines(*text);
-    int number = 0;
-    for (std::string line; std::getline(lines, line);) {
-        ++number;
-        if (const auto included = included_name(line)) {
-            append(*included, fmt::format("{}:{}", name, number), out);
-            out.text += fmt::format("#line {} {}\n", number + 1, index);
+    const std::vector<std::string> lines = lines_of(*text);
+    const std::vector<bool> for_cpp = lines_for_cpp(lines);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::string place = fmt::format("{}:{}", name, i + 1);
+        if (for_cpp[i]) {
+            out.text += '\n';
+        } else if (const auto included = included_name(lines[i])) {
+            append(*included, place, check, out);
+            out.text += fmt::format("#line {} {}\n", i + 2, index);
         } else {
-            out.text += line;
+            const auto fault = check.fault_of(lines[i], i + 1 < lines.size() ? lines[i + 1] : std::string());
+            if (fault) throw Error(Fault::input, place, *fault);
+            out.text += lines[i];
             out.text += '\n';
         }
     }
@@ -71,7 +86,8 @@ ResolvedSource ShaderSource::resolve(std::string_view name, const Defines& defin
     out.text = "#version 450 core\n";
     for (const auto& [key, value] : defines)
         out.text += fmt::format("#define {} {}\n", key, value);
-    append(name, "", out);
+    MacroCheck check(defines);
+    append(name, "", check, out);
     return out;
 }
 

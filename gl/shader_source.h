@@ -12,6 +12,8 @@ namespace cairn::gl {
 /// Preprocessor definitions put before a shader's text: {"TREE_N", "4"}.
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
+class MacroCheck;
+
 /// A shader after its #includes: one text for the driver, and the names behind the numbers in its #line
 /// directives.
 struct ResolvedSource {
@@ -26,13 +28,14 @@ public:
     ShaderSource() = default;
     explicit ShaderSource(std::optional<std::filesystem::path> folder) : folder_(std::move(folder)) {}
 
-    /// Resolves `#include "folder/file.glsl"` (each file once, names relative to shaders/) and adds #version
-    /// 450 core.
-    /// @throws Error (Fault::input) naming file and line when a file does not exist.
+    /// Resolves `#include "folder/file.glsl"` (each file once, names relative to shaders/), leaves out what
+    /// stands under `#ifdef __cplusplus`, and adds #version 450 core.
+    /// @throws Error (Fault::input) naming file and line when a file does not exist, when #if names a macro
+    /// that is not defined, or when a feature is tested by #ifdef (gl/macro_check.h).
     [[nodiscard]] ResolvedSource resolve(std::string_view name, const Defines& defines = {}) const;
 
 private:
-    void append(std::string_view name, const std::string& from, ResolvedSource& out) const;
+    void append(std::string_view name, const std::string& from, MacroCheck& check, ResolvedSource& out) const;
     [[nodiscard]] std::optional<std::string> text_of(std::string_view name) const;
 
     std::optional<std::filesystem::path> folder_;

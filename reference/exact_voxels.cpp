@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "reference/embree.h"
 #include "reference/separating_axes.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/exact_mask.h"
 
 namespace cairn::reference {
@@ -40,10 +40,10 @@ public:
 
     [[nodiscard]] std::array<glm::i64vec3, 3> positions(std::size_t triangle) const {
         if (triangle >= near_count_) return surface_.far_triangles[triangle - near_count_].positions;
-        const auto [chunk, vertices] = at(triangle);
+        const Place place = at(triangle);
         std::array<glm::i64vec3, 3> out;
         for (int corner = 0; corner < 3; ++corner) {
-            const auto& p = chunk->positions[vertices[corner]];
+            const auto& p = place.chunk->positions[place.triangle.vertices[corner]];
             out[std::size_t(corner)] = {p[0], p[1], p[2]};
         }
         return out;
@@ -61,11 +61,12 @@ public:
             material = far_triangle.material;
             if (!is_masked(material)) return std::nullopt;
         } else {
-            const auto [chunk, vertices] = at(triangle);
-            material = vertices.w;
+            const Place place = at(triangle);
+            material = place.triangle.material;
             if (!is_masked(material)) return std::nullopt;
             for (int corner = 0; corner < 3; ++corner) {
-                const interop::SurfaceAttributes& attributes = chunk->attributes[vertices[corner]];
+                const interop::SurfaceAttributes& attributes =
+                    place.chunk->attributes[place.triangle.vertices[corner]];
                 texcoords[std::size_t(corner)] = attributes.texcoord;
                 colors[std::size_t(corner)] = attributes.color;
             }
@@ -77,14 +78,14 @@ public:
 private:
     struct Place {
         const voxelizer::SurfaceChunk* chunk;
-        glm::uvec4 vertices;
+        interop::SurfaceTriangle triangle;
     };
 
     [[nodiscard]] Place at(std::size_t triangle) const {
         const auto next = std::upper_bound(first_of_chunk_.begin(), first_of_chunk_.end(), triangle);
         const auto chunk = std::size_t(next - first_of_chunk_.begin()) - 1;
         const voxelizer::SurfaceChunk& found = surface_.chunks[chunk];
-        return {&found, found.triangles[triangle - first_of_chunk_[chunk]].vertices_material};
+        return {&found, found.triangles[triangle - first_of_chunk_[chunk]]};
     }
     [[nodiscard]] bool is_masked(std::uint32_t material) const {
         return (surface_.materials[material].flags >> MATERIAL_MASK_BIT & 1U) != 0;

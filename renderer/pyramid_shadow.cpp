@@ -12,7 +12,8 @@
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/shadow/column_pyramid.h"
 #include "renderer/shadow/column_shadows.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/mesh.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
 #include "voxelizer/surface/moving_surface.h"
 
@@ -22,7 +23,6 @@ struct PyramidShadowRenderer::Parts {
     Parts(const voxelizer::Grid& shown_grid, const PyramidShadowOptions& options,
           const gl::ShaderSource& shaders)
         : grid(shown_grid),
-          shape(make_tree_shape(2, 8, options.resolution)),
           pyramid(options.resolution, shaders),
           shadows(pyramid, options.mask, shaders),
           voxelizer(shaders) {
@@ -34,7 +34,6 @@ struct PyramidShadowRenderer::Parts {
     [[nodiscard]] std::vector<std::uint32_t> light(const View& view, int shown);
 
     voxelizer::Grid grid;
-    TreeShape shape;  ///< of the same voxels, for what a view is checked by
     ColumnPyramid pyramid;
     ColumnShadows shadows;
     voxelizer::ConservativeVoxelizer voxelizer;
@@ -58,19 +57,22 @@ void PyramidShadowRenderer::Parts::build_pyramid() {
 
 /// @param shown  SHOW_SURFACE or SHOW_LIGHT
 std::vector<std::uint32_t> PyramidShadowRenderer::Parts::light(const View& view, int shown) {
-    check_view(view, shape);
+    check_view(view);
     const auto start = Clock::now();
     statistics = {.move_ms = move_ms, .pyramid_bytes = pyramid.size_bytes()};
     build_pyramid();
-    interop::MarchView marched = march_view(view, grid, shape, nullptr);
+    interop::MarchView marched = march_view(view, grid);
+    marched.shown = shown;
+    marched.background_pixel = 0;
     std::vector<std::uint32_t> pixels;
-    for (int row = 0; row < view.height; row += marched.band.y) {
+    for (int row = 0; row < view.height; row += marched.row_count) {
         const auto drawing = Clock::now();
         const MeshSurface mesh = raster->draw_surface(marched, {grid.origin, grid.voxel_size}, row);
         glFinish();
         statistics.raster_ms += milliseconds_since(drawing);
         const int end = std::min(mesh.first_row + mesh.rows, view.height);
-        marched.band = glm::ivec4(row, end - row, shown, 0);
+        marched.first_row = row;
+        marched.row_count = end - row;
         const auto band =
             shadows.light(marched, pyramid, {mesh.first_row, mesh.nearest, mesh.surface, MESH_OWN_HEIGHT});
         pixels.insert(pixels.end(), band.begin(), band.end());

@@ -15,7 +15,8 @@
 #include "renderer/produce/surface_content.h"
 #include "renderer/produce/volume_content.h"
 #include "renderer/renderer_parts.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/pool.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
@@ -54,11 +55,10 @@ Renderer::Renderer(std::shared_ptr<const Field> field, const TransferFunction& t
     const VolumeShape shape = make_volume_shape(field->frame(), options.n, options.m, options.max_resolution);
     auto content = std::make_unique<VolumeContent>(shape, std::move(field), transfer.visible());
     auto table = std::make_shared<TransferTable>(transfer, volume_options, content->grid().voxel_size);
-    MarchKind kind{"march/volume.comp.glsl",
-                   "march/volume_shadow.comp.glsl",
-                   {{"VOLUME_STEPS", std::to_string(volume_options.steps_per_voxel)}},
-                   [table] { table->bind(); },
-                   false};
+    MarchKind kind{.primary = "march/volume.comp.glsl",
+                   .shadow = "march/volume_shadow.comp.glsl",
+                   .volume_steps = volume_options.steps_per_voxel,
+                   .bind = [table] { table->bind(); }};
     parts_ = std::make_unique<Parts>(shape.tree, std::move(content), options, shaders, std::move(kind));
 }
 
@@ -103,9 +103,12 @@ optics::Image Renderer::march(const View& view, Rows rows, int shown,
     const bool is_known = !image.rgba.empty();
     if (!is_known) image = {view.width, rows.count, {}};
     const int end = rows.first + rows.count;
-    for (int row = rows.first; row < end && !is_known; row += marched.band.y) {
+    marched.shown = shown;
+    marched.background_pixel = background;
+    for (int row = rows.first; row < end && !is_known; row += marched.row_count) {
         const int drawn_end = std::min(parts.draw_mix(marched, row), end);
-        marched.band = glm::ivec4(row, std::min(band_rows, drawn_end - row), shown, int(background));
+        marched.first_row = row;
+        marched.row_count = std::min(band_rows, drawn_end - row);
         parts.marcher.begin_frame(marched, parts.tree, parts.pool, is_blended, parts.drawn);
         march_band(row);
         std::vector<std::uint8_t> band = parts.marcher.read_image();
@@ -168,8 +171,7 @@ std::uint64_t Renderer::prefetch(const View& next, double budget_ms) {
     if (parts.is_empty()) return 0;
     const FrameStatistics of_frame = parts.statistics;
     const View thin = thinned(next);
-    interop::MarchView marched = parts.march_view_of(thin);
-    marched.band = glm::ivec4(0, thin.height, int(thin.show), int(background_pixel(thin.background)));
+    const interop::MarchView marched = parts.march_view_of(thin);
     parts.tree.keep_since(parts.frame_round);
     parts.marcher.begin_frame(marched, parts.tree, parts.pool, is_blended);
     while (Clock::now() < deadline) {

@@ -98,7 +98,7 @@ public:
 private:
     struct Parts;
     /// Marches rows of a picture band by band; `march_band(row)` brings one to its end.
-    /// @param shown  SHOW_* of shaders/interop/config.h.
+    /// @param shown  SHOW_* of shaders/interop/march.h.
     optics::Image march(const View& view, Rows rows, int shown, const std::function<void(int)>& march_band);
     std::unique_ptr<Parts> parts_;
 };

@@ -9,7 +9,8 @@
 #include "renderer/frame/prefetch_view.h"
 #include "renderer/march/march_view.h"
 #include "renderer/mesh/mesh_raster.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/mesh.h"
+#include "shaders/interop/tile_query.h"
 
 namespace cairn::renderer {
 namespace {
@@ -37,8 +38,8 @@ std::vector<Question> by_urgency(const PassResult& pass, const Tree& tree) {
 }
 
 MarchKind with_content(MarchKind kind, const Content& content) {
-    if (content.has_constant()) kind.defines.emplace_back("HAS_CONSTANT", "1");
-    if (content.has_low_frequency()) kind.defines.emplace_back("HAS_FINAL", "1");
+    kind.has_constant = content.has_constant();
+    kind.has_final = content.has_low_frequency();
     return kind;
 }
 
@@ -71,7 +72,7 @@ Renderer::Parts::Parts(const TreeShape& tree_shape, std::unique_ptr<Content> sho
 /// Draws what the rays of a row meet beside voxels. Returns the row behind the last that has been drawn.
 int Renderer::Parts::draw_mix(const interop::MarchView& view, int row) {
     const MarchSpace space{content->grid().origin, content->grid().voxel_size};
-    int end = view.size_shadow.y;
+    int end = view.height;
     drawn = MarchMix{};
     if (mix.meshes != nullptr) {
         const MeshSurface mesh = mix.meshes->draw_surface(view, space, row);
@@ -125,7 +126,7 @@ interop::MarchView Renderer::Parts::march_view_of(const View& view) {
         drop_empty(windows, shape, content->oracle());
     }
     interop::MarchView marched = march_view(view, grid, shape, windows.empty() ? nullptr : &windows.back());
-    marched.surface_color = glm::vec4(content->uniform_color(), 1.0F);
+    marched.surface_color = content->uniform_color();
     if (windows.empty()) return marched;
     const Place light = place_of(view, view.light.position, grid);
     marched_windows =
@@ -332,7 +333,8 @@ void Renderer::Parts::look_ahead(Clock::time_point deadline) {
         return;
     }
     interop::MarchView marched = march_view_of(fine);
-    marched.band = glm::ivec4(rows.first, rows.count, int(fine.show), int(background_pixel(fine.background)));
+    marched.first_row = rows.first;
+    marched.row_count = rows.count;
     tree.keep_since(ahead.since);
     marcher.begin_frame(marched, tree, pool, blends(ahead.view));
     for (;;) {

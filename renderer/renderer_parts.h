@@ -16,6 +16,8 @@
 #include "renderer/produce/batch_pace.h"
 #include "renderer/produce/content.h"
 #include "renderer/renderer.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "scenes/snapshot.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/grid.h"
 
 namespace cairn::voxelizer {
 

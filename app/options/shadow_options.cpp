@@ -8,7 +8,7 @@
 
 #include "app/options/parse.h"
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::app {
 namespace {

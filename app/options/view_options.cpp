@@ -11,7 +11,7 @@
 
 #include "app/options/parse.h"
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/pool.h"
 
 namespace cairn::app {
 namespace {

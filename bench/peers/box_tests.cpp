@@ -46,8 +46,8 @@ BoxTests::BoxTests(const interop::MarchView& view, const gl::ShaderSource& shade
       forward_(view.forward),
       across_(per_unit(view.right)),
       down_(-per_unit(view.up)),
-      size_(view.size_shadow.x, view.size_shadow.y),
-      pixel_(2.0 * glm::length(glm::dvec3(view.up)) / view.size_shadow.y),
+      size_(view.width, view.height),
+      pixel_(2.0 * glm::length(glm::dvec3(view.up)) / view.height),
       program_(gl::build_raster(shaders, "bench/test_box.vert.glsl", "bench/test_box.frag.glsl")) {
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &id);

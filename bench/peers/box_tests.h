@@ -10,7 +10,7 @@
 #include "gl/program.h"
 #include "gl/shader_source.h"
 #include "renderer/march/front_cells.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
 
 namespace cairn::bench {
 

@@ -6,6 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include "bench/peers/row_spans.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/exact_mask.h"
 #include "voxelizer/surface/far_triangles.h"
 
@@ -24,7 +26,7 @@ constexpr std::size_t block_triangles = 4096;
 std::array<glm::ivec3, 3> corners_of(const SurfaceChunk& chunk, std::size_t triangle) {
     std::array<glm::ivec3, 3> out;
     for (int i = 0; i < 3; ++i) {
-        const auto& p = chunk.positions[chunk.triangles[triangle].vertices_material[i]];
+        const auto& p = chunk.positions[chunk.triangles[triangle].vertices[i]];
         out[std::size_t(i)] = {p[0], p[1], p[2]};
     }
     return out;
@@ -119,7 +121,7 @@ public:
         const std::array<glm::ivec3, 3> corners = corners_of(chunk, number);
         const int shift = LATTICE_BITS - region_.level;
         const interop::SurfaceTriangle& triangle = chunk.triangles[number];
-        const interop::SurfaceMaterial& material = surface_.materials[triangle.vertices_material.w];
+        const interop::SurfaceMaterial& material = surface_.materials[triangle.material];
         const bool masked = (material.flags >> MATERIAL_MASK_BIT & 1U) != 0;
         if (!masked && mark_line(corners, shift)) return;
         const RowSpans spans(corners, shift);
@@ -132,7 +134,7 @@ public:
         std::array<glm::vec2, 3> texcoords;
         std::array<std::uint32_t, 3> colors;
         for (std::size_t i = 0; i < 3; ++i) {
-            const auto& attributes = chunk.attributes[triangle.vertices_material[int(i)]];
+            const auto& attributes = chunk.attributes[triangle.vertices[int(i)]];
             positions[i] = corners[i];
             texcoords[i] = attributes.texcoord;
             colors[i] = attributes.color;

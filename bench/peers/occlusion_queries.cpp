@@ -8,7 +8,6 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "renderer/march/march_view.h"
-#include "shaders/interop/config.h"
 
 namespace cairn::bench {
 
@@ -40,8 +39,8 @@ interop::MarchView marched_view(const renderer::View& view, const renderer::Cont
     renderer::View primary = view;
     primary.shadow = renderer::Shadow::none;
     interop::MarchView marched = renderer::march_view(primary, content.grid(), shape, nullptr);
-    marched.surface_color = glm::vec4(content.uniform_color(), 1.0F);
-    marched.band = glm::ivec4(0, view.height, SHOW_SURFACE, int(renderer::background_pixel(view.background)));
+    marched.surface_color = content.uniform_color();
+    marched.shown = SHOW_SURFACE;
     return marched;
 }
 
@@ -103,7 +102,7 @@ void VisibleBricks::load_and_draw(Tiles tiles) {
 /// Marches the picture through what is there, for the depths where its rays end.
 void VisibleBricks::draw() {
     interop::MarchView view = view_;
-    view.band.w = 0;  // rays get through where nothing is
+    view.background_pixel = 0;  // rays get through where nothing is
     saturate_.begin_frame(view, tree_, pool_, false);
     while (!saturate_.run_pass(++round_, tree_, pool_, PassKind::stand_in).done()) {
     }
@@ -140,7 +139,7 @@ void VisibleBricks::show() {
         result_.bricks_used += stamp != 0 ? 1 : 0;
     while (!pass.done())
         pass = picture_.run_pass(++round_, tree_, pool_, PassKind::stand_in);
-    result_.image = {view_.size_shadow.x, view_.size_shadow.y, picture_.read_image()};
+    result_.image = {view_.width, view_.height, picture_.read_image()};
 }
 
 Visibility VisibleBricks::by_frustum() {

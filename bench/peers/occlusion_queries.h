@@ -13,6 +13,7 @@
 #include "renderer/pool/tree.h"
 #include "renderer/produce/content.h"
 #include "renderer/renderer.h"
+#include "shaders/interop/march.h"
 
 namespace cairn::bench {
 

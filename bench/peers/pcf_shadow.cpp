@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "gl/draw_state.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/shadow_map.h"
 
 namespace cairn::bench {
 namespace {

@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
 
 namespace cairn::bench {
 namespace {
@@ -49,7 +50,7 @@ ThreeDirections::ThreeDirections(const voxelizer::Surface& surface, int resoluti
         }
         for (const interop::SurfaceTriangle& t : chunk.triangles) {
             for (int corner = 0; corner < 3; ++corner)
-                indices.push_back(t.vertices_material[corner]);
+                indices.push_back(t.vertices[corner]);
         }
         draws_.push_back({gl::Buffer::of(std::span<const glm::vec3>(positions), "positions"),
                           gl::Buffer::of(std::span<const std::uint32_t>(indices), "indices"),

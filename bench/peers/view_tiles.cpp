@@ -27,11 +27,11 @@ bool may_hold_child(renderer::Oracle& oracle, const glm::uvec2& mask, const Tile
 
 ViewTest::ViewTest(const interop::MarchView& view, const renderer::TreeShape& shape)
     : shape_(shape),
-      cone_{glm::dvec3(view.eye), double(view.eye.w), false},
+      cone_{glm::dvec3(view.eye), double(view.pixel_cone), false},
       forward_(view.forward),
       across_(glm::dvec3(view.right) / glm::dot(glm::dvec3(view.right), glm::dvec3(view.right))),
       up_(glm::dvec3(view.up) / glm::dot(glm::dvec3(view.up), glm::dvec3(view.up))) {
-    if (view.forward.w == 0.0F && !shape.has_windows()) return;
+    if (view.skipped == 0.0F && !shape.has_windows()) return;
     throw Error(Fault::usage, "view", "its rays do not start at its eye",
                 "bring the eye nearer to the scene");
 }

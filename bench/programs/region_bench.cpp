@@ -26,6 +26,7 @@
 #include "gl/context.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/grid.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
 #include "voxelizer/methods/voxelize_tiles.h"
 #include "voxelizer/surface/triangle_index.h"

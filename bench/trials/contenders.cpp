@@ -12,6 +12,7 @@
 #include "voxelizer/surface/triangle_index.h"
 #ifdef CAIRN_BENCH_OPENVDB
 #include "bench/peers/openvdb_mesh.h"
+#include "shaders/interop/surface.h"
 #endif
 
 namespace cairn::bench {
@@ -71,7 +72,7 @@ Contender openvdb(const Trial& trial) {
         for (const auto& p : chunk.positions)
             points.emplace_back(glm::dvec3(p[0], p[1], p[2]) * unit - glm::dvec3(trial.region.origin));
         for (const interop::SurfaceTriangle& triangle : chunk.triangles)
-            triangles.push_back(first + glm::uvec3(triangle.vertices_material));
+            triangles.push_back(first + triangle.vertices);
     }
     const OpenVdbMesh mesh(points, triangles);
     return {"openvdb", on_cpu, [mesh, size = trial.region.size](voxelizer::BitGrid* voxels) {

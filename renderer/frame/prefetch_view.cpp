@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "renderer/march/marcher.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
 
 namespace cairn::renderer {
 namespace {

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "renderer/march/front_cells.h"
-#include "shaders/interop/config.h"
 
 namespace cairn::renderer {
 namespace {
@@ -25,17 +24,17 @@ public:
         : view_(view),
           is_blended_(is_blended),
           forward_(view.forward),
-          eye_(dvec3(view.eye) - double(view.forward.w) * forward_),
+          eye_(dvec3(view.eye) - double(view.skipped) * forward_),
           across_(dvec3(view.right) / glm::dot(dvec3(view.right), dvec3(view.right))),
           down_(dvec3(view.up) / -glm::dot(dvec3(view.up), dvec3(view.up))),
-          half_size_(0.5 * view.size_shadow.x, 0.5 * view.size_shadow.y),
+          half_size_(0.5 * view.width, 0.5 * view.height),
           slack_(place_margin * (root_side + glm::length(dvec3(view.eye)))),
-          count_((view.size_shadow.x + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE,
-                 (view.band.y + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE),
+          count_((view.width + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE,
+                 (view.row_count + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE),
           near_(std::size_t(count_.x) * std::size_t(count_.y), std::numeric_limits<double>::infinity()),
           far_(near_.size(), 0.0) {}
 
-    [[nodiscard]] ConeOfSight cone() const { return {eye_, double(view_.eye.w), is_blended_}; }
+    [[nodiscard]] ConeOfSight cone() const { return {eye_, double(view_.pixel_cone), is_blended_}; }
 
     /// Does any ray of the band come near the box?
     [[nodiscard]] bool sees(const Box& box) const {
@@ -73,7 +72,7 @@ private:
     };
 
     [[nodiscard]] Rectangle project(const Box& box) const {
-        const glm::ivec2 last(view_.size_shadow.x - 1, view_.band.y - 1);
+        const glm::ivec2 last(view_.width - 1, view_.row_count - 1);
         const dvec3 middle = 0.5 * (box.low + box.high) - eye_;
         const dvec3 half = 0.5 * (box.high - box.low) + slack_;
         const double depth = glm::dot(middle, forward_);
@@ -87,7 +86,7 @@ private:
         const double farthest = 1.0 / (depth + half_depth);
         const glm::dvec2 low = glm::min((place - reach) * nearest, (place - reach) * farthest);
         const glm::dvec2 high = glm::max((place + reach) * nearest, (place + reach) * farthest);
-        const glm::dvec2 first_pixel(-0.5, -0.5 - double(view_.band.x));
+        const glm::dvec2 first_pixel(-0.5, -0.5 - double(view_.first_row));
         const glm::dvec2 low_pixel = glm::ceil((low + 1.0) * half_size_ + first_pixel - pixel_margin);
         const glm::dvec2 high_pixel = glm::floor((high + 1.0) * half_size_ + first_pixel + pixel_margin);
         return {glm::ivec2(glm::clamp(low_pixel, glm::dvec2(0.0), glm::dvec2(last + 1))),
@@ -122,8 +121,8 @@ std::vector<interop::BlockStart> block_starts(const interop::MarchView& view, co
 namespace {
 
 int block_count(const interop::MarchView& view) {
-    const glm::ivec2 count((view.size_shadow.x + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE,
-                           (view.band.y + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE);
+    const glm::ivec2 count((view.width + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE,
+                           (view.row_count + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE);
     return count.x * count.y;
 }
 

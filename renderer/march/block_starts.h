@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "renderer/pool/tree.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
 
 namespace cairn::renderer {
 

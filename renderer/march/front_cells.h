@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "renderer/pool/tree.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/pool.h"
 
 namespace cairn::renderer {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::renderer {
 
@@ -33,7 +33,7 @@ View in_world(const View& view, const voxelizer::Grid& grid, const TreeShape& sh
     return out;
 }
 
-static_assert(int(optics::LightShape::sphere) == LIGHT_CONE &&
+static_assert(int(optics::LightShape::sphere) == LIGHT_SPHERE &&
               int(optics::LightShape::rectangle) == LIGHT_RECTANGLE &&
               int(optics::LightShape::disk) == LIGHT_DISK);
 
@@ -41,12 +41,16 @@ static_assert(int(optics::LightShape::sphere) == LIGHT_CONE &&
 void set_area_light(interop::MarchView& out, const View& view, double voxel_size) {
     const optics::Light& light = view.light;
     const double lost = 2.0 * std::pow(std::sin(0.5 * light.angle), 2.0);
-    out.light_u = glm::vec4(glm::vec3(light.half_u / voxel_size), float(light.radius / voxel_size));
-    out.light_v = glm::vec4(glm::vec3(light.half_v / voxel_size), float(lost));
+    out.light_half_u = glm::vec3(light.half_u / voxel_size);
+    out.light_half_v = glm::vec3(light.half_v / voxel_size);
+    out.light_radius = float(light.radius / voxel_size);
+    out.light_cosine_loss = float(lost);
     const optics::LightShape shape = light.positional ? light.shape : optics::LightShape::sphere;
     const bool soft = is_soft(view);
-    out.area_light =
-        glm::ivec4(soft ? view.shadow_rays : 1, int(shape), soft ? 1 : 0, soft && view.shadow_cones ? 1 : 0);
+    out.light_shape = int(shape);
+    out.shadow_rays = soft ? view.shadow_rays : 1;
+    out.is_soft = soft ? 1 : 0;
+    out.is_cones = soft && view.shadow_cones ? 1 : 0;
 }
 
 /// What of a view is told in voxels: of the finest level, from the root cube's low corner; or of the coarsest
@@ -95,18 +99,29 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     const double skipped = distance > 3.0 * placed.side ? distance - 2.0 * placed.side : 0.0;
 
     interop::MarchView out{};
-    out.eye = glm::vec4(glm::vec3(eye + forward * skipped), float(cone));
-    out.forward = glm::vec4(glm::vec3(forward), float(skipped));
-    out.right = glm::vec4(glm::vec3(right * half_width), 0.0F);
-    out.up = glm::vec4(glm::vec3(up * half_height), 0.0F);
-    out.light = view.light.positional ? glm::vec4(glm::vec3(placed.light), 1.0F)
-                                      : glm::vec4(glm::vec3(glm::normalize(view.light.towards)), 0.0F);
-    out.light_color = glm::vec4(view.light.color, view.light.ambient);
-    out.background = glm::vec4(view.background, float(view.shadow_pixel_error));
+    out.eye = glm::vec3(eye + forward * skipped);
+    out.pixel_cone = float(cone);
+    out.forward = glm::vec3(forward);
+    out.skipped = float(skipped);
+    out.right = glm::vec3(right * half_width);
+    out.up = glm::vec3(up * half_height);
+    out.width = view.width;
+    out.height = view.height;
+    out.row_count = view.height;
+    out.light = glm::vec3(view.light.positional ? placed.light : glm::normalize(view.light.towards));
+    out.light_is_positional = view.light.positional ? 1 : 0;
+    out.light_color = view.light.color;
+    out.ambient = view.light.ambient;
+    out.background = view.background;
+    out.background_pixel = background_pixel(view.background);
+    out.shown = int(view.show);
+    out.casts_shadows = view.shadow == Shadow::hard ? 1 : 0;
+    out.shadow_cone_scale = float(view.shadow_pixel_error);
     set_area_light(out, view, placed.voxel);
-    out.size_shadow = glm::ivec4(view.width, view.height, view.shadow == Shadow::hard ? 1 : 0, 0);
-    const auto finite = [](const glm::vec4& v) { return std::isfinite(glm::dot(v, glm::vec4(1.0F))); };
-    if (!finite(out.eye) || !finite(out.forward) || !finite(out.light)) {
+    const auto finite = [](const glm::vec3& v, float scalar) {
+        return std::isfinite((v.x + v.y) + (v.z + scalar));
+    };
+    if (!finite(out.eye, out.pixel_cone) || !finite(out.forward, out.skipped) || !finite(out.light, 0.0F)) {
         throw Error(Fault::usage, "view", "the camera or the light is too far away for a float to tell",
                     "bring it nearer to the scene");
     }
@@ -120,6 +135,10 @@ interop::MarchView march_view(const View& view, const voxelizer::Grid& grid, con
     if (coarsest != nullptr) return march_view(view, in_window(view, grid, shape, *coarsest), shape.n);
     const View unanchored = in_world(view, grid, shape);
     return march_view(unanchored, in_voxels(unanchored, grid), shape.n);
+}
+
+interop::MarchView march_view(const View& view, const voxelizer::Grid& grid) {
+    return march_view(view, in_voxels(view, grid), 1);
 }
 
 }  // namespace cairn::renderer

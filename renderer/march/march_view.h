@@ -3,7 +3,7 @@
 #include "renderer/march/windows.h"
 #include "renderer/pool/tree_shape.h"
 #include "renderer/view/view.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
 #include "voxelizer/grid.h"
 
 /// From a view in the world to what rays are told of it.
@@ -17,5 +17,9 @@ namespace cairn::renderer {
 /// @throws Error (Fault::usage) when floats cannot tell where the camera or the light is.
 [[nodiscard]] interop::MarchView march_view(const View& view, const voxelizer::Grid& grid,
                                             const TreeShape& shape, const Window* coarsest);
+
+/// Likewise for voxels of one size, without a tree: the view has no anchor, and a ray's cone is as wide as
+/// its pixel.
+[[nodiscard]] interop::MarchView march_view(const View& view, const voxelizer::Grid& grid);
 
 }  // namespace cairn::renderer

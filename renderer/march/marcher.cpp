@@ -8,8 +8,9 @@
 #include "gl/limits.h"
 #include "renderer/march/block_starts.h"
 #include "renderer/march/shadow_ends.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/mesh.h"
+#include "shaders/interop/pool.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::renderer {
 namespace {
@@ -25,17 +26,6 @@ constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
 constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t);
 constexpr std::size_t query_urgent_offset = query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t);
 static_assert(QUERY_RANKS == QUERY_RANK_WINDOWS + 8 * MAX_WINDOWS);
-
-static_assert(int(Traversal::restart) == TRAVERSAL_RESTART &&
-              int(Traversal::stackless) == TRAVERSAL_STACKLESS &&
-              int(Traversal::mini_stack) == TRAVERSAL_MINI_STACK);
-
-gl::Defines defines_of(const TreeShape& shape, bool has_color, const MarchOptions& options) {
-    gl::Defines defines = shape.defines(has_color);
-    defines.emplace_back("TRAVERSAL", std::to_string(int(options.traversal)));
-    if (options.tile_queries == TileQueries::blocks) defines.emplace_back("TILE_BLOCKS", "1");
-    return defines;
-}
 
 /// Rays in windows begin their descents at the window's tiles, and the eye is never far from those.
 MarchOptions options_for(const TreeShape& shape, const MarchOptions& options) {
@@ -65,9 +55,9 @@ std::uint32_t pixels_of(const std::vector<interop::BlockStart>& starts, const gl
 Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
                  const gl::ShaderSource& shaders, MarchKind kind)
     : options_(options_for(shape, options)),
-      shaders_(shaders),
       kind_(std::move(kind)),
-      defines_(defines_of(shape, has_color, options_)),
+      programs_(
+          march_programs({shape, has_color, options_.traversal, options_.tile_queries, kind_}, shaders)),
       view_(sizeof(interop::MarchView), "view"),
       shadow_ends_(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE * sizeof(float), "ends of shadow rays"),
       queries_(query_urgent_offset + QUERY_RANKS * sizeof(std::uint32_t), "tile query buffer"),
@@ -76,7 +66,6 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& opt
         throw Error(Fault::usage, "tile queries", std::to_string(options.query_capacity) + " are no capacity",
                     "choose between 1 and " + std::to_string(QUERY_CAPACITY));
     }
-    defines_.insert(defines_.end(), kind_.defines.begin(), kind_.defines.end());
     if (options.tile_queries == TileQueries::blocks) tile_blocks_.emplace(shaders);
     if (shape.has_windows())
         windows_ = gl::Buffer(window_header_bytes + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows");
@@ -84,48 +73,20 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& opt
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
     shadow_ends_texture_ = gl::TextureHandle(id);
     glTextureBuffer(id, GL_R32F, shadow_ends_.id());
-    (void)primary_program(PassKind::patient);
-    (void)shadow_program(PassKind::patient);
+    (void)program(RayKind::primary, PassKind::patient);
+    (void)program(RayKind::shadow, PassKind::patient);
 }
 
-const gl::Program& Marcher::primary_program(PassKind kind) {
-    const int progressive = kind == PassKind::patient ? 0 : 1;
-    const int show_tree = show_tree_ ? 1 : 0;
-    const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
-    const int proxy = mix_.proxy_span != 0 ? 1 : 0;
-    const int blended = blended_ ? 1 : 0;
-    gl::Program& program =
-        primary_[std::size_t(progressive + 2 * show_tree + 4 * meshes + 8 * proxy + 16 * blended)];
-    if (program.id() == 0) {
-        gl::Defines defines = defines_;
-        defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
-        defines.emplace_back("BLENDED", std::to_string(blended));
-        defines.emplace_back("SHOW_TREE", std::to_string(show_tree));
-        if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
-        if (proxy != 0) defines.emplace_back("WITH_PROXY", "");
-        program = gl::build_compute(shaders_, kind_.primary, defines);
-    }
-    return program;
-}
-
-const gl::Program& Marcher::shadow_program(PassKind kind) {
-    const int progressive = kind == PassKind::patient ? 0 : 1;
-    const int meshes = mix_.mesh_nearest != 0 ? 1 : 0;
-    const int soft = soft_shadows_ ? 1 : 0;
-    const int cones = shadow_cones_ ? 1 : 0;
-    const int blended = blended_ ? 1 : 0;
-    gl::Program& program =
-        shadow_[std::size_t(progressive + 2 * meshes + 4 * soft + 8 * blended + 16 * cones)];
-    if (program.id() == 0) {
-        gl::Defines defines = defines_;
-        defines.emplace_back("BLENDED", std::to_string(blended));
-        defines.emplace_back("PROGRESSIVE", std::to_string(progressive));
-        if (meshes != 0) defines.emplace_back("WITH_MESHES", "");
-        if (soft != 0) defines.emplace_back("SOFT_SHADOWS", "");
-        if (cones != 0) defines.emplace_back("SHADOW_CONES", "");
-        program = gl::build_compute(shaders_, kind_.shadow, defines);
-    }
-    return program;
+const gl::Program& Marcher::program(RayKind rays, PassKind kind) {
+    const bool is_primary = rays == RayKind::primary;
+    return programs_.get({.rays = rays,
+                          .progressive = kind != PassKind::patient,
+                          .blended = blended_,
+                          .meshes = mix_.mesh_nearest != 0,
+                          .proxy = is_primary && mix_.proxy_span != 0,
+                          .show_tree = is_primary && show_tree_,
+                          .soft = !is_primary && soft_shadows_,
+                          .cones = !is_primary && shadow_cones_});
 }
 
 int Marcher::band_rows(int width, int height) {
@@ -139,7 +100,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
                           bool is_blended, const MarchMix& mix) {
     mix_ = mix;
     blended_ = is_blended;
-    size_ = glm::ivec2(view.size_shadow.x, view.band.y);
+    size_ = glm::ivec2(view.width, view.row_count);
     const auto pixels = std::size_t(size_.x) * std::size_t(size_.y);
     if (pixels > capacity_) {
         rays_ = gl::Buffer(pixels * sizeof(interop::RayState), "ray states");
@@ -147,9 +108,9 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         image_ = gl::Buffer(pixels * sizeof(std::uint32_t), "picture");
         capacity_ = pixels;
     }
-    shadow_rays_ = view.area_light.x;
-    soft_shadows_ = view.area_light.z != 0;
-    shadow_cones_ = view.area_light.w != 0;
+    shadow_rays_ = view.shadow_rays;
+    soft_shadows_ = view.is_soft != 0;
+    shadow_cones_ = view.is_cones != 0;
     const std::size_t sum_bytes =
         capacity_ * (shadow_cones_ ? sizeof(interop::ShadowConeSum) : sizeof(interop::ShadowSum));
     if (soft_shadows_ && shadow_sums_.size_bytes() < sum_bytes)
@@ -166,12 +127,14 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     }
     interop::MarchView marched = view;
     // They are told for one direction.
-    if (options_.block_starts && view.size_shadow.z != 0 && view.light.w == 0.0F && !soft_shadows_) {
+    if (options_.block_starts && view.casts_shadows != 0 && view.light_is_positional == 0 && !soft_shadows_) {
         const ShadowEnds ends = shadow_ends(view, tree, is_blended);
         shadow_ends_.write(0, ends.ends.data(), ends.ends.size() * sizeof(float));
         marched.shadow_across = ends.across;
+        marched.shadow_across_offset = ends.across_offset;
         marched.shadow_down = ends.down;
-        marched.size_shadow.w = 1;
+        marched.shadow_down_offset = ends.down_offset;
+        marched.has_shadow_ends = 1;
     }
     view_.write(0, &marched, sizeof(marched));
     std::vector<interop::BlockStart> starts =
@@ -182,9 +145,9 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     if (starts_.size_bytes() < starts.size() * sizeof(starts[0]))
         starts_ = gl::Buffer(capacity_ * sizeof(starts[0]), "block starts");
     starts_.write(0, starts.data(), starts.size() * sizeof(starts[0]));
-    image_.fill(0, pixels * sizeof(std::uint32_t), std::uint32_t(view.band.w));
+    image_.fill(0, pixels * sizeof(std::uint32_t), view.background_pixel);
     first_pass_ = true;
-    show_tree_ = view.band.z == SHOW_LEVELS || view.band.z == SHOW_BRICKS;
+    show_tree_ = view.shown == SHOW_LEVELS || view.shown == SHOW_BRICKS;
     pauses_ = 0;
     waiting_primary_ = 0;
     waiting_shadow_ = 0;
@@ -226,7 +189,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     queries_.bind_storage(SSBO_QUERIES);
     if (!tile_blocks_) usage_.bind_storage(SSBO_USAGE);
     if (soft_shadows_) shadow_sums_.bind_storage(SSBO_SHADOW_SUMS);
-    image_.bind_storage(SSBO_IMAGE);
+    image_.bind_storage(SSBO_PICTURE);
     starts_.bind_storage(SSBO_BLOCK_STARTS);
     glBindTextureUnit(TEXTURE_SHADOW_ENDS, shadow_ends_texture_.id());
     tree.bind_for_reading();
@@ -236,10 +199,10 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
 
     const std::uint32_t old_shadow = waiting_shadow_;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
-    if (old_shadow != 0) run({shadow_program(kind), true, old_shadow}, round, pool, kind);
+    if (old_shadow != 0) run({program(RayKind::shadow, kind), true, old_shadow}, round, pool, kind);
     const std::uint32_t primary =
         first_pass_ ? std::uint32_t(start_count_ * PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) : waiting_primary_;
-    if (primary != 0) run({primary_program(kind), false, primary}, round, pool, kind);
+    if (primary != 0) run({program(RayKind::primary, kind), false, primary}, round, pool, kind);
     const bool began = first_pass_;
     first_pass_ = false;
     list_side_ ^= 1;

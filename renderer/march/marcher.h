@@ -1,24 +1,23 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "gl/buffer.h"
 #include "gl/program.h"
+#include "renderer/march/march_programs.h"
 #include "renderer/march/tile_blocks.h"
 #include "renderer/march/tile_queries.h"
 #include "renderer/march/traversal.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
-#include "shaders/interop/config.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/tile_query.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 
@@ -69,15 +68,6 @@ struct MarchMix {
     int proxy_first_row = 0;
 };
 
-/// How rays see a kind of content: the entry points, and what they need beside the pools.
-struct MarchKind {
-    std::string primary = "march/primary.comp.glsl";
-    std::string shadow = "march/shadow.comp.glsl";
-    gl::Defines defines;
-    std::function<void()> bind;  ///< before each pass; may be empty
-    bool of_surfaces = true;     ///< the shadow rays know SHOW_LIGHT and SHADOW_CONES
-};
-
 /// The ray-marching passes of one frame: the ray states, the lists of rays that must go on, and the tile
 /// query buffer (Crassin et al. 2008, sections 5.1 to 5.3).
 class Marcher {
@@ -90,7 +80,7 @@ public:
     /// for.
     [[nodiscard]] static int band_rows(int width, int height);
 
-    /// Sets the frame, or a band of it (`view.band`); buffers grow when the bands do.
+    /// Sets the frame, or a band of it (`view.first_row` and `row_count`); buffers grow when the bands do.
     /// @param is_blended  rays see two mips at once (LevelOfDetail::blended); the pool's bricks have mips.
     void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool, bool is_blended,
                      const MarchMix& mix = {});
@@ -105,7 +95,7 @@ public:
     [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool,
                                       PassKind kind = PassKind::patient);
 
-    [[nodiscard]] bool marches_surfaces() const { return kind_.of_surfaces; }
+    [[nodiscard]] bool marches_surfaces() const { return kind_.of_surfaces(); }
 
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
 
@@ -113,9 +103,8 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> read_image() const;
 
 private:
-    /// Built when a pass first asks for it.
-    [[nodiscard]] const gl::Program& primary_program(PassKind kind);
-    [[nodiscard]] const gl::Program& shadow_program(PassKind kind);
+    /// The program of the frame's rays.
+    [[nodiscard]] const gl::Program& program(RayKind rays, PassKind kind);
     struct Dispatch {
         const gl::Program& program;
         bool is_shadow = false;
@@ -129,15 +118,11 @@ private:
     [[nodiscard]] std::vector<std::uint32_t> read_urgent(PassResult& result);
 
     MarchOptions options_;
-    gl::ShaderSource shaders_;
     MarchKind kind_;
-    gl::Defines defines_;
     void bind_mix() const;
     void set_mix(const gl::Program& program) const;
 
-    std::array<gl::Program, 32>
-        primary_;  ///< PROGRESSIVE + 2 * SHOW_TREE + 4 * meshes + 8 * proxy + 16 * BLENDED
-    std::array<gl::Program, 32> shadow_;  ///< PROGRESSIVE + 2 * meshes + 4 * soft + 8 * BLENDED + 16 * cones
+    gl::ProgramFamily<MarchVariant> programs_;
     gl::Buffer view_;
     gl::Buffer windows_;  ///< empty where the tree has none
     gl::Buffer shadow_ends_;

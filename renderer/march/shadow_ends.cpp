@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "renderer/march/front_cells.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::renderer {
 namespace {
@@ -38,14 +38,17 @@ ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree, bool is
     const dvec3 down = glm::normalize(glm::cross(to_light, across)) * scale;
     const dvec3 centre(0.5 * root_side);
     ShadowEnds result;
-    result.across = glm::vec4(glm::vec3(across), float(0.5 * SHADOW_ENDS_SIDE - glm::dot(across, centre)));
-    result.down = glm::vec4(glm::vec3(down), float(0.5 * SHADOW_ENDS_SIDE - glm::dot(down, centre)));
+    result.across = glm::vec3(across);
+    result.across_offset = float(0.5 * SHADOW_ENDS_SIDE - glm::dot(across, centre));
+    result.down = glm::vec3(down);
+    result.down_offset = float(0.5 * SHADOW_ENDS_SIDE - glm::dot(down, centre));
     result.ends.assign(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE, -1e30F);
 
     const dvec3 forward(view.forward);
-    const ConeOfSight cone{dvec3(view.eye) - double(view.forward.w) * forward, double(view.eye.w),
+    const ConeOfSight cone{dvec3(view.eye) - double(view.skipped) * forward, double(view.pixel_cone),
                            is_blended};
-    const double voxel = largest_voxel(shape, cone, cone.width * std::max(double(view.background.w), 1.0));
+    const double voxel =
+        largest_voxel(shape, cone, cone.width * std::max(double(view.shadow_cone_scale), 1.0));
     const double slack = place_margin * root_side;
     const auto add = [&](const Box& box) {
         // A ray may meet the voxels of a coarser level there.
@@ -53,8 +56,8 @@ ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree, bool is
         const dvec3 high = glm::ceil(box.high / voxel) * voxel + slack;
         const dvec3 middle = 0.5 * (low + high);
         const dvec3 half = 0.5 * (high - low);
-        const glm::dvec2 place(glm::dot(across, middle) + double(result.across.w),
-                               glm::dot(down, middle) + double(result.down.w));
+        const glm::dvec2 place(glm::dot(across, middle) + double(result.across_offset),
+                               glm::dot(down, middle) + double(result.down_offset));
         const glm::dvec2 reach(glm::dot(glm::abs(across), half), glm::dot(glm::abs(down), half));
         const glm::ivec2 first = glm::max(glm::ivec2(glm::floor(place - reach - 0.01)), 0);
         const glm::ivec2 last = glm::min(glm::ivec2(glm::floor(place + reach + 0.01)), SHADOW_ENDS_SIDE - 1);

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/tile_query.h"
 
 namespace cairn::renderer {
 

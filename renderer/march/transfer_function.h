@@ -5,7 +5,7 @@
 
 #include <glm/glm.hpp>
 
-#include "shaders/interop/config.h"
+#include "shaders/interop/volume.h"
 
 namespace cairn::renderer {
 

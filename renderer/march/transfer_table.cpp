@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/volume.h"
 
 namespace cairn::renderer {
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shaders/interop/config.h"
-
 namespace cairn::renderer {
 namespace {
 
@@ -94,20 +92,20 @@ std::vector<interop::MarchWindow> march_windows(const std::vector<Window>& windo
         const Window& window = windows[i];
         interop::MarchWindow out{};
         const glm::dvec3 eye_here = place_in(window, shape, eye);
-        out.eye = glm::vec4(glm::vec3(eye_here), 0.0F);
-        out.light = glm::vec4(glm::vec3(glm::normalize(towards)), 0.0F);
+        out.eye = glm::vec3(eye_here);
+        out.light = glm::vec3(glm::normalize(towards));
         if (light != nullptr) {
             const glm::dvec3 here = place_in(window, shape, *light);
-            const bool far = glm::length(here) > far_light;
-            out.light =
-                far ? glm::vec4(glm::vec3(glm::normalize(here)), 0.0F) : glm::vec4(glm::vec3(here), 1.0F);
+            const bool is_far = glm::length(here) > far_light;
+            out.light = glm::vec3(is_far ? glm::normalize(here) : here);
+            out.light_is_positional = is_far ? 0 : 1;
         }
         if (i + 1 < windows.size()) {
             const glm::i64vec3 outer = windows[i + 1].low << std::int64_t(shape.n_shift());
             const glm::ivec3 tiles(window.low - outer);
-            out.shift_level = glm::ivec4(tiles << (tile_shift - shape.n_shift()), 0);
+            out.shift = tiles << (tile_shift - shape.n_shift());
         }
-        out.shift_level.w = window.level;
+        out.level = window.level;
         marched.push_back(out);
     }
     return marched;

@@ -9,7 +9,7 @@
 #include "renderer/pool/tree.h"
 #include "renderer/pool/tree_shape.h"
 #include "renderer/produce/oracle.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 

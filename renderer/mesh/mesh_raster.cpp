@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "gl/buffer.h"
 #include "gl/draw_state.h"
 #include "gl/handle.h"
-#include "gl/program.h"
+#include "gl/program_family.h"
 #include "renderer/mesh/mesh_targets.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/mesh.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
@@ -19,9 +22,17 @@ namespace {
 
 constexpr unsigned group_size = 64;
 
+/// What tells the programs that draw a mesh apart.
+struct MeshVariant {
+    std::string fragment;  ///< the fragment shader
+    bool is_masked = false;
+    [[nodiscard]] auto operator<=>(const MeshVariant&) const = default;
+};
+
 /// Some rows of a picture, as the rays of a camera see them: what a drawing depends on.
 struct Strip {
-    glm::vec4 eye, forward, right, up;
+    glm::vec3 eye, forward, right, up;
+    float skipped;
     glm::ivec2 picture;
     MarchSpace space;
     int first_row;
@@ -30,11 +41,12 @@ struct Strip {
 };
 
 Strip strip_of(const interop::MarchView& view, const MarchSpace& space, int row) {
-    const glm::ivec2 picture(view.size_shadow.x, view.size_shadow.y);
+    const glm::ivec2 picture(view.width, view.height);
     const int most = std::max(MESH_STRIP_PIXELS / picture.x, 1);
     const int first = row / most * most;
-    return {view.eye, view.forward, view.right, view.up,
-            picture,  space,        first,      std::min(most, picture.y - first)};
+    return {view.eye, view.forward, view.right,
+            view.up,  view.skipped, picture,
+            space,    first,        std::min(most, picture.y - first)};
 }
 
 /// Undoes pixel_ray(): a point `p` from the moved eye is x * w * right - y * w * up + along * forward, with w
@@ -49,10 +61,13 @@ interop::MeshView mesh_view(const Strip& strip, const voxelizer::Grid& lattice) 
         (lattice.origin - strip.space.origin) / strip.space.unit - glm::dvec3(strip.eye);
     const double side = unit * double(1 << LATTICE_BITS);
     interop::MeshView out{};
-    out.place = glm::dvec4(origin, unit);
-    out.across = glm::dvec4(rows[0], 0.0);
-    out.down = glm::dvec4(rows[1], side * MESH_NEAREST_PART);
-    out.along = glm::dvec4(rows[2], double(strip.forward.w));
+    out.origin = origin;
+    out.lattice_unit = unit;
+    out.across = rows[0];
+    out.down = rows[1];
+    out.nearest = side * MESH_NEAREST_PART;
+    out.along = rows[2];
+    out.skipped = double(strip.skipped);
     return out;
 }
 
@@ -62,7 +77,7 @@ gl::Buffer index_buffer(const voxelizer::GpuSurfaceChunk& chunk) {
     indices.reserve(3 * triangles.size());
     for (const interop::SurfaceTriangle& triangle : triangles) {
         for (int corner = 0; corner < 3; ++corner)
-            indices.push_back(triangle.vertices_material[corner]);
+            indices.push_back(triangle.vertices[corner]);
     }
     return gl::Buffer::of(std::span<const std::uint32_t>(indices), "indices of a mesh");
 }
@@ -70,12 +85,15 @@ gl::Buffer index_buffer(const voxelizer::GpuSurfaceChunk& chunk) {
 }  // namespace
 
 struct MeshRaster::Parts {
-    Parts(const voxelizer::Grid& grid, const gl::ShaderSource& source)
-        : shaders(source),
-          lattice(grid),
+    Parts(const voxelizer::Grid& grid, const gl::ShaderSource& shaders)
+        : lattice(grid),
           view_buffer(sizeof(interop::MarchView), "view of a mesh"),
           mesh_view_buffer(sizeof(interop::MeshView), "place of a mesh"),
-          place_triangles(gl::build_compute(shaders, "mesh/place_triangles.comp.glsl")) {
+          place_triangles(gl::build_compute(shaders, "mesh/place_triangles.comp.glsl")),
+          drawings([shaders](const MeshVariant& variant) {
+              return gl::build_raster(shaders, "mesh/project.vert.glsl", variant.fragment, {},
+                                      {{"MASKED", variant.is_masked ? "1" : "0"}});
+          }) {
         GLuint name = 0;
         glCreateVertexArrays(1, &name);
         vertex_array = gl::VertexArrayHandle(name);
@@ -107,14 +125,8 @@ struct MeshRaster::Parts {
         span_strip.reset();
     }
 
-    /// The program of a fragment shader, built when it is first used.
-    const gl::Program& program(gl::Program& cached, const char* fragment) const {
-        if (cached.id() == 0) {
-            cached = gl::build_raster(shaders, "mesh/project.vert.glsl", fragment, {},
-                                      {{"MASKED", surface->has_mask ? "1" : "0"}});
-        }
-        return cached;
-    }
+    /// The program of a fragment shader, for the surface that is shown.
+    const gl::Program& program(const char* fragment) { return drawings.get({fragment, surface->has_mask}); }
 
     void begin(const Strip& strip, const MeshTargets& targets);
     void place(std::size_t chunk, unsigned first, unsigned count);
@@ -123,7 +135,6 @@ struct MeshRaster::Parts {
     void draw_look(const Strip& strip);
     void draw_span(const Strip& strip);
 
-    gl::ShaderSource shaders;
     voxelizer::Grid lattice;
     std::uint64_t triangle_count = 0;
     voxelizer::GpuSurface own;                                  ///< where it is not the caller's
@@ -136,7 +147,7 @@ struct MeshRaster::Parts {
     gl::Buffer mesh_view_buffer;
     gl::VertexArrayHandle vertex_array;
     gl::Program place_triangles;
-    gl::Program find_nearest, look_of_surface, find_span;
+    gl::ProgramFamily<MeshVariant> drawings;
     MeshTargets nearest, look, span;
     std::optional<Strip> surface_strip, span_strip;  ///< what the targets hold
 };
@@ -151,8 +162,11 @@ void MeshRaster::Parts::begin(const Strip& strip, const MeshTargets& targets) {
     view.forward = strip.forward;
     view.right = strip.right;
     view.up = strip.up;
-    view.size_shadow = glm::ivec4(strip.picture, 0, 0);
-    view.band = glm::ivec4(strip.first_row, strip.rows, 0, 0);
+    view.skipped = strip.skipped;
+    view.width = strip.picture.x;
+    view.height = strip.picture.y;
+    view.first_row = strip.first_row;
+    view.row_count = strip.rows;
     view_buffer.write(0, &view, sizeof(view));
     const interop::MeshView placing = mesh_view(strip, lattice);
     mesh_view_buffer.write(0, &placing, sizeof(placing));
@@ -208,7 +222,7 @@ void MeshRaster::Parts::draw_nearest(const Strip& strip) {
     glClearNamedFramebufferfv(nearest.framebuffer(), GL_COLOR, 0, nothing.data());
     glEnable(GL_BLEND);
     glBlendEquationi(0, GL_MIN);
-    draw_all(program(find_nearest, "mesh/find_nearest.frag.glsl"));
+    draw_all(program("mesh/find_nearest.frag.glsl"));
 }
 
 void MeshRaster::Parts::draw_look(const Strip& strip) {
@@ -222,7 +236,7 @@ void MeshRaster::Parts::draw_look(const Strip& strip) {
     constexpr std::array<GLuint, 4> nothing{};
     glClearNamedFramebufferuiv(look.framebuffer(), GL_COLOR, 0, nothing.data());
     glBindTextureUnit(TEXTURE_MESH_NEAREST, nearest.texture(0));
-    draw_all(program(look_of_surface, "mesh/draw_surface.frag.glsl"));
+    draw_all(program("mesh/draw_surface.frag.glsl"));
 }
 
 void MeshRaster::Parts::draw_span(const Strip& strip) {
@@ -241,7 +255,7 @@ void MeshRaster::Parts::draw_span(const Strip& strip) {
     glBlendEquationi(0, GL_MIN);
     glBlendEquationi(1, GL_FUNC_ADD);
     glBlendFunci(1, GL_ONE, GL_ONE);
-    draw_all(program(find_span, "mesh/find_span.frag.glsl"));
+    draw_all(program("mesh/find_span.frag.glsl"));
 }
 
 namespace {

@@ -11,7 +11,7 @@
 #include "gl/shader_source.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
 #include "voxelizer/grid.h"
 #include "voxelizer/surface/surface.h"
 

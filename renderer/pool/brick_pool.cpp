@@ -7,7 +7,8 @@
 
 #include "base/error.h"
 #include "gl/limits.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/pool.h"
+#include "shaders/interop/produce.h"
 
 namespace cairn::renderer {
 namespace {
@@ -68,8 +69,8 @@ Layout lay_out(const TreeShape& shape, const glm::ivec3& slots) {
 }  // namespace
 
 BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t bytes)
-    : channels_(channels), mask_words_(std::size_t(shape.mask_words())) {
-    const std::size_t mask_bytes = mask_words_ * 8;
+    : shape_(shape), channels_(channels) {
+    const std::size_t mask_bytes = mask_bytes_a_slot();
     const std::size_t texel_bytes = (channels.color ? 4U : 1U) + (channels.normal ? 4U : 0U);
     auto bytes_of = [&](const Layout& layout, int slots) {
         return layout.texels() * texel_bytes + std::size_t(slots) * mask_bytes;
@@ -153,7 +154,7 @@ void BrickPool::upload(int slot, const gl::Buffer& texels, std::size_t offset_by
                         reinterpret_cast<const void*>(offset_bytes));
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    glNamedBufferSubData(masks_.id(), GLintptr(std::size_t(slot) * mask_words_ * 8),
+    glNamedBufferSubData(masks_.id(), GLintptr(std::size_t(slot) * mask_bytes_a_slot()),
                          GLsizeiptr(masks.size_bytes()), masks.data());
 }
 

@@ -53,7 +53,7 @@ public:
     [[nodiscard]] const std::vector<glm::ivec4>& levels() const { return levels_; }
     [[nodiscard]] bool has_color() const { return channels_.color; }
     /// 64-bit words of masks a slot.
-    [[nodiscard]] std::size_t mask_words() const { return mask_words_; }
+    [[nodiscard]] std::size_t mask_words() const { return std::size_t(shape_.mask_words()); }
 
     /// What every slot has of a mip in a texture of the pool: a cube of `side` texels at first_texel().
     struct Layer {
@@ -68,7 +68,7 @@ public:
     [[nodiscard]] std::vector<Layer> layers() const;
     /// The masks of slot s start at byte s * mask_bytes_a_slot().
     [[nodiscard]] const gl::Buffer& masks() const { return masks_; }
-    [[nodiscard]] std::size_t mask_bytes_a_slot() const { return mask_words_ * 8; }
+    [[nodiscard]] std::size_t mask_bytes_a_slot() const { return mask_words() * 8; }
 
     /// For the marcher: sampled textures. For the producer: images and the mask buffer.
     void bind_for_reading() const;
@@ -81,8 +81,8 @@ public:
                 std::span<const std::uint64_t> masks) const;
 
 private:
+    TreeShape shape_;
     Channels channels_;
-    std::size_t mask_words_ = 0;
     int slot_count_ = 0;
     std::size_t size_bytes_ = 0;
     glm::ivec3 slots_{0};

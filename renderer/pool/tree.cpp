@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "gl/limits.h"
-#include "shaders/interop/bindings.h"
 
 namespace cairn::renderer {
 namespace {

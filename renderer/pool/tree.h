@@ -11,8 +11,7 @@
 #include "gl/handle.h"
 #include "renderer/pool/lru.h"
 #include "renderer/pool/tree_shape.h"
-#include "shaders/interop/config.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/pool.h"
 
 namespace cairn::renderer {
 

@@ -5,7 +5,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/pool.h"
 
 namespace cairn::renderer {
 
@@ -16,6 +17,13 @@ gl::Defines TreeShape::defines(bool has_color) const {
     return {{"TREE_N", std::to_string(n)},
             {"BRICK_M", std::to_string(m)},
             {"BRICK_MIPS", std::to_string(mips)},
+            {"CELL_BASE", std::to_string(cell_base())},
+            {"N_SHIFT", std::to_string(n_shift())},
+            {"M_SHIFT", std::to_string(m_shift())},
+            {"BLOCK_SIDE", std::to_string(block_side())},
+            {"BLOCKS", std::to_string(blocks())},
+            {"SUMMARY_WORDS", std::to_string(summary_words())},
+            {"MASK_WORDS", std::to_string(mask_words())},
             {"MAX_LEVEL", std::to_string(has_windows() ? levels_in_window() : max_level)},
             {"WINDOWS", has_windows() ? "1" : "0"},
             {"HAS_COLOR", has_color ? "1" : "0"}};

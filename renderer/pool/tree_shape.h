@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 
@@ -46,9 +46,11 @@ struct TreeShape {
         const int across = (m >> mip) > block_side() ? (m >> mip) / block_side() : 1;
         return across * across * across;
     }
-    /// 64-bit words of a brick's masks: the summary, then a word a block, mip after mip.
+    /// 64-bit words that say which blocks of a brick are not empty, one bit per block of mip 0.
+    [[nodiscard]] int summary_words() const { return (blocks() + 63) / 64; }
+    /// 64-bit words of a brick's masks: the summary, then a word per block, mip after mip.
     [[nodiscard]] int mask_words() const {
-        int words = (blocks() + 63) / 64;
+        int words = summary_words();
         for (int mip = 0; mip <= mips; ++mip)
             words += blocks(mip);
         return words;
@@ -58,6 +60,8 @@ struct TreeShape {
     [[nodiscard]] bool has_windows() const;
     /// Levels under a window's tiles that a ray can reach.
     [[nodiscard]] int levels_in_window() const;
+    /// For shaders: the numbers above by the same names in capitals, MAX_LEVEL (in a window where there are
+    /// windows), WINDOWS and HAS_COLOR.
     [[nodiscard]] gl::Defines defines(bool has_color) const;
 };
 

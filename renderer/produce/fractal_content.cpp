@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/produce.h"
 
 namespace cairn::renderer {
 namespace {
@@ -66,8 +65,10 @@ std::vector<Produced> FractalProducer::produce(std::span<const BrickRequest> req
         const std::size_t count = std::min(batch, requests.size() - first);
         std::vector<interop::FractalTile> tiles;
         for (const BrickRequest& request : requests.subspan(first, count)) {
-            tiles.push_back({glm::ivec4(pool.first_texel(request.slot), request.slot),
-                             glm::uvec4(neighbour_mask(request.tile, shape_), 0, 0, 0)});
+            interop::FractalTile& tile = tiles.emplace_back();
+            tile.first_texel = pool.first_texel(request.slot);
+            tile.slot = request.slot;
+            tile.neighbours = neighbour_mask(request.tile, shape_);
         }
         tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::FractalTile));
         tiles_.bind_storage(SSBO_BRICK_TILES);

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "renderer/produce/tile_lists.h"
+#include "shaders/interop/grid.h"
 
 namespace cairn::renderer {
 namespace {

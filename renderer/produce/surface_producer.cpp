@@ -4,7 +4,7 @@
 #include <bit>
 
 #include "renderer/produce/tile_lists.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/surface.h"
 
 namespace cairn::renderer {
 namespace {
@@ -142,8 +142,10 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     for (const BrickRequest& request : requests) {
         const int side = shape_.voxel_side(request.tile.level);
         const int size = shape_.cell_base() == 2 ? int(std::bit_width(unsigned(side))) - 1 : side;
-        tiles.push_back({glm::ivec4(glm::ivec3(request.tile.position) * shape_.m, size),
-                         glm::ivec4(request.slot, 0, 0, 0)});
+        interop::BrickTile& tile = tiles.emplace_back();
+        tile.low = glm::ivec3(request.tile.position) * shape_.m;
+        tile.size = size;
+        tile.slot = request.slot;
     }
     tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::BrickTile));
 

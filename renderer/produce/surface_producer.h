@@ -6,7 +6,7 @@
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "renderer/produce/producer.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/produce.h"
 #include "voxelizer/surface/surface.h"
 #include "voxelizer/surface/triangle_index.h"
 

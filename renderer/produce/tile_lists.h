@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/pool/tree_shape.h"
+#include "shaders/interop/grid.h"
 #include "voxelizer/surface/triangle_index.h"
 
 namespace cairn::renderer {

@@ -9,8 +9,7 @@
 
 #include "base/error.h"
 #include "gl/limits.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/columns.h"
 
 namespace cairn::renderer {
 namespace {

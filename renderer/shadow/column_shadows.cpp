@@ -4,8 +4,9 @@
 #include <string>
 
 #include "base/error.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/columns.h"
+#include "shaders/interop/mesh.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::renderer {
 namespace {
@@ -17,40 +18,38 @@ static_assert(int(ColumnMask::mip_level) == COLUMN_MASK_MIP_LEVEL &&
 
 }  // namespace
 
-ColumnShadows::ColumnShadows(const ColumnPyramid& pyramid, ColumnMask mask, const gl::ShaderSource& shaders)
-    : shaders_(shaders),
-      defines_(pyramid.defines()),
-      view_(sizeof(interop::MarchView), "view of shadow rays"),
-      counts_(sizeof(glm::uvec4), "counts of shadow rays") {
-    defines_.emplace_back("COLUMN_MASK", std::to_string(int(mask)));
+gl::Defines defines(const ColumnVariant& variant) {
+    return {{"COLUMN_MASK", std::to_string(int(variant.mask))},
+            {"SOFT_SHADOWS", variant.is_soft ? "1" : "0"}};
 }
 
-const gl::Program& ColumnShadows::program(bool is_soft) {
-    gl::Program& cached = is_soft ? soft_ : hard_;
-    if (cached.id() == 0) {
-        gl::Defines defines = defines_;
-        if (is_soft) defines.emplace_back("SOFT_SHADOWS", "");
-        cached = gl::build_compute(shaders_, "shadow/light_columns.comp.glsl", defines);
-    }
-    return cached;
-}
+ColumnShadows::ColumnShadows(const ColumnPyramid& pyramid, ColumnMask mask, const gl::ShaderSource& shaders)
+    : mask_(mask),
+      programs_([common = pyramid.defines(), shaders](const ColumnVariant& variant) {
+          gl::Defines all = common;
+          for (const auto& define : defines(variant))
+              all.push_back(define);
+          return gl::build_compute(shaders, "shadow/light_columns.comp.glsl", all);
+      }),
+      view_(sizeof(interop::MarchView), "view of shadow rays"),
+      counts_(sizeof(glm::uvec4), "counts of shadow rays") {}
 
 std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, const ColumnPyramid& pyramid,
                                                 const ColumnReceivers& receivers) {
-    const std::size_t pixels = std::size_t(view.size_shadow.x) * std::size_t(view.band.y);
+    const std::size_t pixels = std::size_t(view.width) * std::size_t(view.row_count);
     if (image_.size_bytes() < pixels * sizeof(std::uint32_t)) {
         image_ = gl::Buffer(pixels * sizeof(std::uint32_t), "picture");
-        sums_ = gl::Buffer(pixels * sizeof(glm::uvec2), "sums of shadow rays");
+        sums_ = gl::Buffer(pixels * sizeof(interop::ShadowSum), "sums of shadow rays");
     }
     view_.write(0, &view, sizeof(view));
-    const gl::Program& lighting = program(view.area_light.x > 1);
+    const gl::Program& lighting = programs_.get({mask_, view.shadow_rays > 1});
     lighting.set("mesh_first_row", receivers.first_row);
     lighting.set("mesh_shadows", 1);
     lighting.set("mesh_own_height", receivers.own_height);
     glFinish();
     const auto start = std::chrono::steady_clock::now();
     view_.bind_uniform(UBO_VIEW);
-    image_.bind_storage(SSBO_IMAGE);
+    image_.bind_storage(SSBO_PICTURE);
     sums_.bind_storage(SSBO_SHADOW_SUMS);
     counts_.bind_storage(SSBO_COLUMN_COUNTS);
     pyramid.bind_for_reading();

@@ -1,14 +1,15 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <vector>
 
 #include "gl/buffer.h"
-#include "gl/program.h"
+#include "gl/program_family.h"
 #include "gl/shader_source.h"
 #include "renderer/shadow/column_mask.h"
 #include "renderer/shadow/column_pyramid.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/march.h"
 
 namespace cairn::renderer {
 
@@ -20,6 +21,14 @@ struct ColumnReceivers {
     float own_height = 0.0F;  ///< voxels whose centres are not so far over a receiver's plane, in their
                               ///< sides, are its own surface
 };
+
+/// What tells the programs of shadow rays through a pyramid apart, beside its size.
+struct ColumnVariant {
+    ColumnMask mask = ColumnMask::adaptive;
+    bool is_soft = false;  ///< rays go to samples of the light
+    [[nodiscard]] auto operator<=>(const ColumnVariant&) const = default;
+};
+[[nodiscard]] gl::Defines defines(const ColumnVariant& variant);
 
 /// Shadow rays from rasterized receivers through a pyramid of columns. Needs the context that was current at
 /// its construction.
@@ -39,11 +48,8 @@ public:
     [[nodiscard]] int last_passes() const { return last_passes_; }
 
 private:
-    const gl::Program& program(bool is_soft);
-
-    gl::ShaderSource shaders_;
-    gl::Defines defines_;
-    gl::Program hard_, soft_;  ///< built when first used
+    ColumnMask mask_;
+    gl::ProgramFamily<ColumnVariant> programs_;
     gl::Buffer view_, image_, sums_, counts_;
     double last_milliseconds_ = 0.0;
     int last_passes_ = 0;

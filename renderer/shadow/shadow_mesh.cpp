@@ -8,7 +8,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/shadow_map.h"
 
 namespace cairn::renderer {
 namespace {

@@ -9,7 +9,7 @@
 #include "gl/context.h"
 #include "gl/draw_state.h"
 #include "gl/handle.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/shadow_map.h"
 
 namespace cairn::renderer {
 namespace {

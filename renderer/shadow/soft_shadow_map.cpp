@@ -13,8 +13,6 @@
 #include "gl/draw_state.h"
 #include "gl/timer.h"
 #include "renderer/shadow/blend_state.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
 
 namespace cairn::renderer {
 namespace {

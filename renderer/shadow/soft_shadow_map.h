@@ -10,7 +10,7 @@
 #include "gl/shader_source.h"
 #include "renderer/shadow/shadow_frustum.h"
 #include "renderer/shadow/shadow_mesh.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/shadow_map.h"
 
 namespace cairn::renderer {
 

@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::renderer {
 
@@ -79,6 +80,13 @@ void check_anchor(const std::optional<Tile>& anchor, const TreeShape& shape) {
 }
 
 }  // namespace
+
+void check_view(const View& view) {
+    check_camera(view);
+    if (view.anchor)
+        throw Error(Fault::usage, "view", "the camera is anchored in a tree, and there is none",
+                    "give it a place in the world");
+}
 
 void check_view(const View& view, const TreeShape& shape) {
     check_camera(view);

@@ -79,8 +79,10 @@ struct Rows {
 
 /// A camera that cannot be is a fault of the caller, and NaN in a shader is a picture that nobody can
 /// explain.
-/// @throws Error (Fault::usage)
+/// @throws Error (Fault::usage) naming what is wrong, and its range. Without a tree's shape, an anchor is an
+/// error too.
 void check_view(const View& view, const TreeShape& shape);
+void check_view(const View& view);
 
 /// Does the view ask for shadows of more than the light's middle?
 [[nodiscard]] bool is_soft(const View& view);

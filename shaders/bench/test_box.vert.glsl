@@ -1,5 +1,5 @@
-// One vertex is a corner of one of the twelve triangles of a box. The depth is 1 / distance along the view, so that all
-// bits of a float count. Row 0 of the picture is row 0 of the target.
+// One vertex is a corner of one of the twelve triangles of a box. The depth is 1 / distance along the view,
+// so that all bits of a float count. Row 0 of the picture is row 0 of the target.
 uniform vec3 box_low;  // from the eye, in voxels of the finest level
 uniform vec3 box_high;
 uniform vec3 forward;

@@ -1,14 +1,9 @@
 // Where the shadow rays of a pixel end: samples of a light that has an extent.
 //
-// Hammersley points, which are stratified in each coordinate and together, turned modulo 1 by an offset that is the
-// pixel's own (Cranley and Patterson 1976): neighbours take different samples, and a pixel takes the same ones in every
-// frame.
-
-struct LightSample {
-    vec3 direction;  // from the receiver, unit
-    float reach;     // how far it is
-    float width;     // of its share of the light, at distance 1
-};
+// Hammersley points, which are stratified in each coordinate and together, turned modulo 1 by an offset that
+// is the pixel's own (Cranley and Patterson 1976): neighbours take different samples, and a pixel takes the
+// same ones in every frame.
+#include "interop/shadow_rays.h"
 
 // Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg.
 uint hashed(uint x) {
@@ -22,9 +17,9 @@ float unit_of(uint x) { return float(x >> 8u) * (1.0 / 16777216.0); }
 
 // Sample i of the pixel, in the unit square. `pixel` in the band.
 vec2 sample_place(ivec2 pixel, uint i) {
-    const uint x_turn = hashed(uint(pixel.x) + 16384u * uint(pixel.y + view.band.x));
+    const uint x_turn = hashed(uint(pixel.x) + 16384u * uint(pixel.y + view.first_row));
     const uint y_turn = hashed(x_turn ^ 0x9E3779B9u);
-    const float x = (float(i) + 0.5) / float(view.area_light.x);
+    const float x = (float(i) + 0.5) / float(view.shadow_rays);
     return fract(vec2(x, unit_of(bitfieldReverse(i))) + vec2(unit_of(x_turn), unit_of(y_turn)));
 }
 
@@ -49,28 +44,30 @@ float light_scale() {
 }
 
 LightSample flat_sample(vec3 centre, vec3 point, vec2 p) {
-    const vec3 way = centre + light_scale() * (p.x * view.light_u.xyz + p.y * view.light_v.xyz) - point;
+    const vec3 way = centre + light_scale() * (p.x * view.light_half_u + p.y * view.light_half_v) - point;
     const float reach = length(way);
     const vec3 direction = way / reach;
-    const float square = view.area_light.y == LIGHT_RECTANGLE ? 4.0 : 3.14159265;
-    const float area = square * abs(dot(cross(light_scale() * view.light_u.xyz, light_scale() * view.light_v.xyz), direction));
-    return LightSample(direction, reach, sqrt(area / float(view.area_light.x)) / reach);
+    const float square = view.light_shape == LIGHT_RECTANGLE ? 4.0 : 3.14159265;
+    const vec3 across = cross(light_scale() * view.light_half_u, light_scale() * view.light_half_v);
+    const float area = square * abs(dot(across, direction));
+    return LightSample(direction, reach, sqrt(area / float(view.shadow_rays)) / reach);
 }
 
-// In the cone that the light fills, even in solid angle: 1 - cosine grows with the square of the disk's radius.
-LightSample cone_sample(vec4 light, vec3 point, vec2 disk) {
-    const bool positional = light.w > 0.5;
-    const vec3 way = positional ? light.xyz - point : light.xyz;
+// In the cone that the light fills, even in solid angle: 1 - cosine grows with the square of the disk's
+// radius.
+LightSample cone_sample(LightPlace light, vec3 point, vec2 disk) {
+    const bool positional = light.is_positional;
+    const vec3 way = positional ? light.at - point : light.at;
     const float far = length(way);
-    const float radius = light_scale() * view.light_u.w;
+    const float radius = light_scale() * view.light_radius;
     const float sine = min(radius / far, 1.0);
-    const float widest = positional ? sine * sine / (1.0 + sqrt(1.0 - sine * sine)) : view.light_v.w;
+    const float widest = positional ? sine * sine / (1.0 + sqrt(1.0 - sine * sine)) : view.light_cosine_loss;
     const float lost = widest * dot(disk, disk);
     const float across = sqrt(widest * (2.0 - lost));
     const vec3 axis = way / far;
     const vec3 side = normalize(cross(axis, abs(axis.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
     const vec3 direction = normalize((1.0 - lost) * axis + across * (disk.x * side + disk.y * cross(axis, side)));
-    const float width = sqrt(2.0 * 3.14159265 * widest / float(view.area_light.x));
+    const float width = sqrt(2.0 * 3.14159265 * widest / float(view.shadow_rays));
     if (!positional) return LightSample(direction, 1e30, width);
     // To the sphere's front: what is under its middle's height there is the other leg of a right triangle.
     const float off_axis = far * length(cross(axis, direction));
@@ -79,15 +76,16 @@ LightSample cone_sample(vec4 light, vec3 point, vec2 disk) {
 }
 
 LightSample sample_at(vec3 point, vec2 place) {
-    const vec4 light = light_there();
-    if (view.area_light.y == LIGHT_RECTANGLE) return flat_sample(light.xyz, point, 2.0 * place - 1.0);
-    if (view.area_light.y == LIGHT_DISK) return flat_sample(light.xyz, point, on_disk(place));
+    const LightPlace light = light_there();
+    if (view.light_shape == LIGHT_RECTANGLE) return flat_sample(light.at, point, 2.0 * place - 1.0);
+    if (view.light_shape == LIGHT_DISK) return flat_sample(light.at, point, on_disk(place));
     return cone_sample(light, point, on_disk(place));
 }
 
-#ifdef SHADOW_CONES
-// Cones are wide themselves: so their middles keep off the light's edge by as much as all of them together keep the light's
-// second moment, and one alone goes to its middle. But no cone is wider than the root's voxels.
+#if SHADOW_CONES
+// Cones are wide themselves: so their middles keep off the light's edge by as much as all of them together
+// keep the light's second moment, and one alone goes to its middle. But no cone is wider than the root's
+// voxels.
 vec2 cone_place(vec3 point, vec2 place) {
 #if WINDOWS
     const float kept = 1.0;
@@ -96,12 +94,12 @@ vec2 cone_place(vec3 point, vec2 place) {
     const float widest = root / float(BRICK_M) / max(distance(point, vec3(0.5 * root)), 1.0);
     const float kept = min(widest / sample_at(point, vec2(0.5)).width, 1.0);
 #endif
-    return 0.5 + sqrt(1.0 - kept * kept / float(view.area_light.x)) * (place - 0.5);
+    return 0.5 + sqrt(1.0 - kept * kept / float(view.shadow_rays)) * (place - 0.5);
 }
 #endif
 
 LightSample light_sample(vec3 point, ivec2 pixel, uint i) {
-#ifdef SHADOW_CONES
+#if SHADOW_CONES
     return sample_at(point, cone_place(point, sample_place(pixel, i)));
 #else
     return sample_at(point, sample_place(pixel, i));

@@ -1,17 +1,18 @@
-// Between two mips (Crassin et al. 2008, section 4.3). The size that the ray should see (blended_size.glsl) lies between the
-// sides of the voxels of the brick's mip and of the next one: the ray walks the coarser cells, takes the coarse voxel with
-// weight f and the finer ones in the same cell with 1 - f, so that their mean side is that size. At f = 0 and 1 that is the
-// march of one mip alone; where f comes to 1 the next pair of mips begins with 0, for what the next mip (or the parent's
-// brick) holds is the same. A voxel stays a sheet: it gives its share once. Shares add up, so their weighted sum is opaque
-// wherever both mips are.
+// Between two mips (Crassin et al. 2008, section 4.3). The size that the ray should see (blended_size.glsl)
+// lies between the sides of the voxels of the brick's mip and of the next one: the ray walks the coarser
+// cells, takes the coarse voxel with weight f and the finer ones in the same cell with 1 - f, so that their
+// mean side is that size. At f = 0 and 1 that is the march of one mip alone; where f comes to 1 the next pair
+// of mips begins with 0, for what the next mip (or the parent's brick) holds is the same. A voxel stays a
+// sheet: it gives its share once. Shares add up, so their weighted sum is opaque wherever both mips are.
 //
-// f is one for the whole coarse cell, and linear in the size: no logarithm, whose last bits drivers differ in.
+// f is one for the whole coarse cell, and linear in the size: no logarithm, whose last bits drivers differ
+// in.
 
 bool is_occupied(ivec3 voxel, Place place, int mip) {
     const ivec3 b = place_in(voxel, own_shift_of(place) + mip, M_SHIFT - mip);
     const ivec3 c = cell_of(b, BLOCK_SHIFT);
     const int blocks = MIP_BLOCKS_A_SIDE(mip);
-    const int word = place.slot * MASK_WORDS_A_SLOT + first_mask_of(mip) + c.x + blocks * (c.y + blocks * c.z);
+    const int word = place.slot * MASK_WORDS + first_mask_of(mip) + c.x + blocks * (c.y + blocks * c.z);
     return empty_voxel_shift(texelFetch(brick_masks, word).xy, b - cell_low(b, BLOCK_SHIFT)) < 0;
 }
 

@@ -1,7 +1,8 @@
-// The size of the voxels that a ray sees, when levels of detail are blended. Widths are those of march_view(): the pixel's
-// cone times the root of N, so that a tile serves widths from its own voxels' side up to N times that, where its parent
-// takes over. In the first half of that range, by ratio, its own voxels are shown: they are there, and coarser ones are
-// less accurate. In the second half the size grows to that of the parent's voxels, so that nothing changes where those come.
+// The size of the voxels that a ray sees, when levels of detail are blended. Widths are those of
+// march_view(): the pixel's cone times the root of N, so that a tile serves widths from its own voxels' side
+// up to N times that, where its parent takes over. In the first half of that range, by ratio, its own voxels
+// are shown: they are there, and coarser ones are less accurate. In the second half the size grows to that of
+// the parent's voxels, so that nothing changes where those come.
 float blended_size(int own_shift, float width) {
     const float side = float(cell_side(own_shift));
     precise float size = width * width / (float(TREE_N) * side);
@@ -18,8 +19,8 @@ int blended_mip(int own_shift, float width) {
     return mip;
 }
 
-// Width of the ray's cone where the aligned cell around its voxel is nearest to its origin. Exactly the same wherever it is
-// asked: what a ray compares it with must not depend on how a compiler contracts the sum.
+// Width of the ray's cone where the aligned cell around its voxel is nearest to its origin. Exactly the same
+// wherever it is asked: what a ray compares it with must not depend on how a compiler contracts the sum.
 float width_at_cell(Ray ray, int shift) {
 #if RAYS_WIDEN
     const vec3 low = vec3(cell_low(ray.voxel, shift)) - ray.origin;
@@ -32,9 +33,10 @@ float width_at_cell(Ray ray, int shift) {
 #endif
 }
 
-// Does the ray see, around its voxel, this mip of a tile with voxels of this size, or a coarser one? A mip and the next one
-// are seen by whole voxels of the next one, and a cell is nearer than those that it holds: so a ray that sees a mip sees
-// all finer ones too, and what it sees depends on the place alone, not on the way there.
+// Does the ray see, around its voxel, this mip of a tile with voxels of this size, or a coarser one? A mip
+// and the next one are seen by whole voxels of the next one, and a cell is nearer than those that it holds:
+// so a ray that sees a mip sees all finer ones too, and what it sees depends on the place alone, not on the
+// way there.
 bool sees_mip(Ray ray, int own_shift, int mip) {
     const float width = width_at_cell(ray, own_shift + mip + 1);
     const float side = float(cell_side(own_shift));

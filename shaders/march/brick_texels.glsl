@@ -1,7 +1,6 @@
-// What a ray takes from the voxels of a brick.
-// What is left of `transmittance` behind a voxel. Voxels of one surface cover different parts of a pixel, so their
-// shares add up instead of multiplying; and from half covered on, no light may leak between them. Between two mips
-// (march.glsl), `share` is the voxel's weight.
+// What a ray takes from the voxels of a brick. What is left of `transmittance` behind a voxel. Voxels of one
+// surface cover different parts of a pixel, so their shares add up instead of multiplying; and from half
+// covered on, no light may leak between them. Between two mips (march.glsl), `share` is the voxel's weight.
 float behind(float transmittance, float coverage, float share) {
     return max(transmittance - share * min(2.0 * coverage, 1.0), 0.0);
 }
@@ -15,9 +14,10 @@ float coverage_of(Sample s) {
 #endif
 }
 
-// The texels around a sample's middle that a filtered fetch mixes. Of the eight whose centres are the corners of a cube, the
-// four of the tetrahedron along its diagonal that holds the middle: as smooth as a trilinear fetch, for half the fetches
-// (tetrahedral interpolation: Kasson et al. 1995). The one of the voxel itself is among them.
+// The texels around a sample's middle that a filtered fetch mixes. Of the eight whose centres are the corners
+// of a cube, the four of the tetrahedron along its diagonal that holds the middle: as smooth as a trilinear
+// fetch, for half the fetches (tetrahedral interpolation: Kasson et al. 1995). The one of the voxel itself is
+// among them.
 struct Corners {
     ivec3 low;
     ivec3 next;
@@ -25,8 +25,8 @@ struct Corners {
     vec4 weights;  // of low, next, far, low + 1
 };
 
-// By hand, because the samplers' own filtering rounds by where in the pool the slot lies, and by driver; the brick's border
-// keeps it inside the slot.
+// By hand, because the samplers' own filtering rounds by where in the pool the slot lies, and by driver; the
+// brick's border keeps it inside the slot.
 Corners corners_around(Sample s) {
     const vec3 place = s.middle + 0.5;  // from the border's first texel centre
     const vec3 f = fract(place);

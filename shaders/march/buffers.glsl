@@ -1,21 +1,8 @@
 // What all passes of rays read and write.
-#include "interop/config.h"
-#include "interop/bindings.h"
-#include "interop/types.h"
+#include "interop/march.h"
+#include "interop/pool.h"
+#include "interop/tile_query.h"
 #include "pool/brick_masks.glsl"
-
-#ifndef HAS_CONSTANT
-#define HAS_CONSTANT 0
-#endif
-#ifndef HAS_FINAL
-#define HAS_FINAL 0
-#endif
-#ifndef TILE_BLOCKS
-#define TILE_BLOCKS 0
-#endif
-#ifndef BLENDED
-#define BLENDED 0
-#endif
 
 layout(std140, binding = UBO_VIEW) uniform ViewBlock { MarchView view; };
 layout(std430, binding = SSBO_RAYS) buffer RayBlock { RayState rays[]; };
@@ -29,7 +16,6 @@ layout(std430, binding = SSBO_TILE_REPORTS) writeonly buffer ReportBlock { uint 
 #else
 layout(std430, binding = SSBO_USAGE) buffer UsageBlock { uint usage[]; };
 #endif
-layout(std430, binding = SSBO_IMAGE) buffer ImageBlock { uint image_rgba8[]; };
 layout(binding = TEXTURE_NODES) uniform usamplerBuffer nodes;
 #if HAS_CONSTANT
 layout(binding = TEXTURE_NODE_MEANS) uniform usamplerBuffer node_means;

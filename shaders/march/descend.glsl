@@ -1,11 +1,16 @@
 // Down the tree, to the tile that a ray asks for.
+#include "interop/march.h"
+#include "interop/tile_query.h"
+#include "interop/windows.h"
+
 // The brick that a ray is in.
 struct Place {
     int slot;         // -1: none
     int tile_shift;   // log2 of the tile's side
     int mip;          // of the brick: the one that is shown, or the finer of the two that are blended
 #if PROGRESSIVE
-    int brick_shift;  // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in
+    // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in.
+    int brick_shift;
 #endif
 #if HAS_CONSTANT
     uint entry;       // of the node that is constant, where one is
@@ -46,7 +51,7 @@ bool needs_coarser(Ray ray, Place place) {
 
 void use_brick(inout Place place, int slot) {
     place.slot = slot;
-    place.summary = texelFetch(brick_masks, slot * MASK_WORDS_A_SLOT).xy;
+    place.summary = texelFetch(brick_masks, slot * MASK_WORDS).xy;
     touch(slot);
 }
 
@@ -89,8 +94,9 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 }
 #endif
 
-// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far the whole
-// tile is away, or the mip's cell around the voxel: whatever way the ray came and wherever it started, it sees the same.
+// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far
+// the whole tile is away, or the mip's cell around the voxel: whatever way the ray came and wherever it
+// started, it sees the same.
 bool shows(Ray ray, int tile_shift) {
 #if BLENDED
     return sees_mip(ray, tile_shift - M_SHIFT, 0);
@@ -118,7 +124,7 @@ bool shows(Ray ray, int tile_shift) {
 // Level of a tile of this size around the ray.
 int level_of_tile(Ray ray, int tile_shift) {
 #if WINDOWS
-    return windows.of[ray.window].shift_level.w + (ROOT_SHIFT - tile_shift) / N_SHIFT;
+    return windows.of[ray.window].level + (ROOT_SHIFT - tile_shift) / N_SHIFT;
 #else
     return (ROOT_SHIFT - tile_shift) / N_SHIFT;
 #endif
@@ -159,7 +165,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #else
     place.tile_shift = resume(ray, entry, node);
 #if BLENDED
-    // Around this voxel the ray may see a tile itself whose children it saw elsewhere: this one, or one above it.
+    // Around this voxel the ray may see a tile itself whose children it saw elsewhere: this one, or one above
+    // it.
     if (place.tile_shift < ROOT_SHIFT && shows(ray, place.tile_shift)) {
         forget_trail();
         place.tile_shift = resume(ray, entry, node);
@@ -169,7 +176,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     place.brick_shift = place.tile_shift;
 #endif
 #endif
-    // Nothing in the whole scene. (Further down, a tile may show something itself where none of its children does.)
+    // Nothing in the whole scene. (Further down, a tile may show something itself where none of its children
+    // does.)
     if (MAX_LEVEL > 0 && place.tile_shift == ROOT_SHIFT && has_no_child(node)) return DESCENT_EMPTY;
 #if PROGRESSIVE
     Ancestor ancestor = ancestor_of(uvec4(0u), 0u, ROOT_SHIFT);

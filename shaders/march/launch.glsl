@@ -1,10 +1,12 @@
-// Which pixel's primary ray a thread takes, and where it begins and ends: in the first pass of all pixels of the blocks
-// that may see anything, later of the pixels whose rays wait.
-#ifdef WITH_PROXY
+// Which pixel's primary ray a thread takes, and where it begins and ends: in the first pass of all pixels of
+// the blocks that may see anything, later of the pixels whose rays wait.
+#include "interop/march.h"
+#if WITH_PROXY
 #include "mesh/proxy_span.glsl"
 #endif
 
-layout(local_size_x = PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) in;
+#define GROUP_SIZE (PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE)
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BLOCK_STARTS) readonly buffer BlockStartBlock { BlockStart block_starts[]; };
 
@@ -22,39 +24,40 @@ struct Launch {
     BlockStart start;
 };
 
-#ifdef WITH_MESHES
+#if WITH_MESHES
 MeshPixel mesh;  // at the pixel
 #endif
 
 // False when the thread has no pixel.
 bool find_pixel(out Launch launch) {
-    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    const uint i = thread_index();
     launch = Launch(ivec2(0), 0u, BlockStart(0u, 0.0, 1e30));
     if (i >= ray_count) return false;
     if (first_pass) {
-        const int blocks = (view.size_shadow.x + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE;
+        const int blocks = (view.width + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE;
         launch.start = block_starts[i / uint(PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE)];
         const int block = int(launch.start.block);
-        launch.pixel = ivec2(block % blocks, block / blocks) * PIXEL_BLOCK_SIDE + ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
-        if (launch.pixel.x >= view.size_shadow.x || launch.pixel.y >= view.band.y) return false;
+        launch.pixel = ivec2(block % blocks, block / blocks) * PIXEL_BLOCK_SIDE +
+                       ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
+        if (launch.pixel.x >= view.width || launch.pixel.y >= view.row_count) return false;
     } else {
-        const int p = int(lists[list_in + i]);
-        launch.pixel = ivec2(p % view.size_shadow.x, p / view.size_shadow.x);
+        launch.pixel = pixel_at(lists[list_in + i]);
     }
-    launch.index = uint(launch.pixel.y * view.size_shadow.x + launch.pixel.x);
+    launch.index = pixel_index(launch.pixel);
     return true;
 }
 
 Ray launched_ray(Launch launch, PixelRay seen) {
-    Ray ray = make_ray(seen.origin, seen.direction, launch.start.far - seen.skipped, view.eye.w * seen.skipped, view.eye.w);
+    Ray ray = make_ray(seen.origin, seen.direction, launch.start.far - seen.skipped,
+                       view.pixel_cone * seen.skipped, view.pixel_cone);
 #if WINDOWS
     ray.from_eye = true;
 #endif
-#ifdef WITH_MESHES
+#if WITH_MESHES
     mesh = mesh_pixel(launch.pixel);
     ray.t_end = min(ray.t_end, mesh.t);
 #endif
-#ifdef WITH_PROXY
+#if WITH_PROXY
     ray.t_end = min(ray.t_end, proxy_span_at(launch.pixel).y);
 #endif
     return ray;
@@ -62,11 +65,11 @@ Ray launched_ray(Launch launch, PixelRay seen) {
 
 // Puts a new ray where it begins; false when it meets nothing.
 bool enter(inout Ray ray, Launch launch, PixelRay seen) {
-#ifdef WITH_MESHES
+#if WITH_MESHES
     if (voxels_hidden) return false;
 #endif
     ray.t = max(launch.start.near - seen.skipped, 0.0);
-#ifdef WITH_PROXY
+#if WITH_PROXY
     const vec2 span = proxy_span_at(launch.pixel);
     if (span.x >= span.y) return false;
     atomicAdd(counters.launched, 1u);
@@ -84,9 +87,7 @@ bool march_pixel(Launch launch, PixelRay seen) {
     Ray ray = launched_ray(launch, seen);
     bool inside = true;
     if (first_pass) {
-        state.color = vec4(0.0, 0.0, 0.0, 1.0);
-        state.normal_depth = vec4(0.0);
-        state.voxel_t_weight = uvec4(0u);
+        state = new_ray_state();
         inside = enter(ray, launch, seen);
     } else {
         state = rays[launch.index];
@@ -103,10 +104,7 @@ bool march_pixel(Launch launch, PixelRay seen) {
 
 // Leaves the pixel to a shadow ray, which has not started.
 void leave_to_shadow_ray(uint index) {
-    state.voxel_t_weight.xy = uvec2(0xFFFFFFFFu);
-#if WINDOWS
-    state.voxel_t_weight.z = uint(seen_window);
-#endif
+    store_not_started(state);
     rays[index] = state;
     lists[shadow_list + atomicAdd(counters.waiting_shadow, 1u)] = index;
 }

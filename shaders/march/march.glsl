@@ -1,19 +1,23 @@
 // The ray-marcher's one loop. The includer supplies visit(); primary and shadow rays differ only in that.
 //
-// A ray finds the tile that its cone asks for, marches its brick, and looks for the next tile behind it (Crassin et al.
-// 2008, section 5.1), in one of several ways (TRAVERSAL; descend.glsl). Progress is by integer neighbour steps: every step
-// moves one coordinate of `voxel` by at least one in the ray's direction, so no epsilon is needed and no ray can stall.
+// A ray finds the tile that its cone asks for, marches its brick, and looks for the next tile behind it
+// (Crassin et al. 2008, section 5.1), in one of several ways (TRAVERSAL; descend.glsl). Progress is by
+// integer neighbour steps: every step moves one coordinate of `voxel` by at least one in the ray's direction,
+// so no epsilon is needed and no ray can stall.
 //
-// With PROGRESSIVE, for frames that must not take long, rays also ask for the bricks of the nodes that they pass, without
-// waiting for them; and when time is up (stand_in), what is missing is shown by the nearest ancestor that has a brick.
+// With PROGRESSIVE, for frames that must not take long, rays also ask for the bricks of the nodes that they
+// pass, without waiting for them; and when time is up (stand_in), what is missing is shown by the nearest
+// ancestor that has a brick.
 //
-// With HAS_CONSTANT, tiles may hold one value that is not 0 (Crassin et al. 2008, section 4.2): the includer supplies
-// visit_constant() too. With HAS_FINAL, tiles may have nothing finer to show. With BLENDED, rays see two mips of a brick, whose
-// shares lead over from one size of voxels to the next (blend.glsl).
+// With HAS_CONSTANT, tiles may hold one value that is not 0 (Crassin et al. 2008, section 4.2): the includer
+// supplies visit_constant() too. With HAS_FINAL, tiles may have nothing finer to show. With BLENDED, rays see
+// two mips of a brick, whose shares lead over from one size of voxels to the next (blend.glsl).
 //
-// Needs the defines TREE_N, BRICK_M, MAX_LEVEL (the tree's depth, or with WINDOWS that under a window's tiles), HAS_COLOR,
-// PROGRESSIVE and TRAVERSAL; WINDOWS for trees whose voxels a ray cannot count (windows.glsl); BRICK_MIPS and BLENDED where
-// there are mips; and of the includer RAYS_WIDEN: whether cone_slope is other than 0.
+// Needs the defines of TreeShape::defines() (with WINDOWS, for trees whose voxels a ray cannot count,
+// MAX_LEVEL is the depth under a window's tiles) and of renderer/march/march_programs.h; and of the includer
+// RAYS_WIDEN: whether cone_slope is other than 0, and VISIT_TURNS: loop turns that visit() takes at most,
+// which a pass counts (TURN_BUDGET).
+#include "interop/march.h"
 #include "march/buffers.glsl"
 #include "march/tree_cells.glsl"
 #include "march/ray.glsl"
@@ -38,11 +42,6 @@ struct Sample {
     float side;           // of the voxel
     float share;          // weight against the other mip's voxels in the same place, (0, 1]
 };
-
-// Loop turns that visit() takes at most; a pass counts them (TURN_BUDGET).
-#ifndef VISIT_TURNS
-#define VISIT_TURNS 0
-#endif
 
 // Takes one occupied voxel; false stops the ray.
 bool visit(inout Ray ray, Sample s);
@@ -122,8 +121,8 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
     }
 }
 
-// Takes the voxel of a mip around the ray's voxel, which must be occupied, and brings the ray behind it. `goes_on` says
-// whether there is more of the ray; false when visit() has stopped it.
+// Takes the voxel of a mip around the ray's voxel, which must be occupied, and brings the ray behind it.
+// `goes_on` says whether there is more of the ray; false when visit() has stopped it.
 bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_on) {
     const int voxel_shift = own_shift_of(place) + mip;
     const ivec3 low = cell_low(ray.voxel, voxel_shift);
@@ -131,7 +130,7 @@ bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_
     const float side = float(cell_side(voxel_shift));
     const float t_in = ray.t;
     Sample s;
-    s.texel = slot_texel(place.slot, mip);
+    s.texel = first_texel(place.slot, mip);
     s.mip = mip;
     s.voxel = cell_of(low - brick_low, voxel_shift);
     s.side = side;
@@ -149,8 +148,8 @@ bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_
 
 // Marches until the ray is done, or until it misses a tile or pauses: then it stands where it resumes.
 //
-// Threads that run side by side all pay for what any of them does in an innermost loop, so the loops are nested by how
-// seldom their work is needed: an occupied voxel, a tile, an empty cell.
+// Threads that run side by side all pay for what any of them does in an innermost loop, so the loops are
+// nested by how seldom their work is needed: an occupied voxel, a tile, an empty cell.
 //
 // `turns` counts what a thread has done in this pass; it may march several rays.
 int march(inout Ray ray, inout int turns) {

@@ -1,4 +1,5 @@
-// The receiver of a shadow ray: a voxel near its tangent plane, and near it, is its own surface and casts no shadow on it.
+// The receiver of a shadow ray: a voxel near its tangent plane, and near it, is its own surface and casts no
+// shadow on it.
 vec3 receiver;
 vec3 receiver_normal;
 float own_height;
@@ -7,8 +8,9 @@ float receiver_rise;  // of the ray over that plane, for each unit of its length
 
 float own_reach_of(float side) { return side * clamp(2.5 / receiver_rise, 8.0, 64.0); }
 
-// For a ray from the receiver through voxels of this side. The receiver's plane may lie half a voxel's diagonal from the
-// point, and its voxels as far from the plane. A ray at a low angle stays among them for longer.
+// For a ray from the receiver through voxels of this side. The receiver's plane may lie half a voxel's
+// diagonal from the point, and its voxels as far from the plane. A ray at a low angle stays among them for
+// longer.
 void look_to_light(vec3 to_light, float side) {
     receiver_rise = max(dot(receiver_normal, to_light), 1e-3);
     own_reach = own_height > 0.0 ? own_reach_of(side) : 0.0;

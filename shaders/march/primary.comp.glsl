@@ -1,23 +1,7 @@
 // One thread is one waiting primary ray.
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=1
-// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=0
-// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2
-// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=0 WINDOWS=1
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=6 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=0 WINDOWS=1
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES WITH_PROXY
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=2 WITH_PROXY
-// defines: TREE_N=3 BRICK_M=27 MAX_LEVEL=5 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=2
-// defines: TREE_N=8 BRICK_M=16 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=1 HAS_CONSTANT=1 HAS_FINAL=1
-// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=8 HAS_COLOR=1 PROGRESSIVE=1 SHOW_TREE=0 TRAVERSAL=2 HAS_CONSTANT=1
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 TILE_BLOCKS=1
-// defines: TREE_N=2 BRICK_M=16 MAX_LEVEL=12 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=0 WINDOWS=1 TILE_BLOCKS=1
-// defines: TREE_N=4 BRICK_M=16 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=1 BLENDED=1 SHOW_TREE=1 TRAVERSAL=2
-// defines: TREE_N=2 BRICK_M=8 BRICK_MIPS=1 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 SHOW_TREE=1 TRAVERSAL=1
-// defines: TREE_N=8 BRICK_M=8 BRICK_MIPS=3 MAX_LEVEL=3 HAS_COLOR=0 PROGRESSIVE=0 BLENDED=1 SHOW_TREE=0 TRAVERSAL=2 WITH_MESHES
-// defines: TREE_N=4 BRICK_M=8 BRICK_MIPS=2 MAX_LEVEL=4 HAS_COLOR=1 PROGRESSIVE=0 BLENDED=0 SHOW_TREE=0 TRAVERSAL=0
+#include "interop/march.h"
 #define RAYS_WIDEN 1
+#define VISIT_TURNS 0
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #include "march/visible_normal.glsl"
@@ -27,36 +11,32 @@
 
 #include "march/launch.glsl"
 
-
 bool visit(inout Ray ray, Sample s) {
-#ifdef WITH_MESHES
+#if WITH_MESHES
     if (s.t > mesh.t) return false;
 #endif
     const float left = behind(state.color.a, coverage_of(s), s.share);
     const float weight = state.color.a - left;
     const Corners around = corners_around(s);
-    vec3 color = view.surface_color.rgb;
+    vec3 color = view.surface_color;
 #if HAS_COLOR
     const vec4 mean = filtered(brick_color, around);
-    color = mean.rgb / max(mean.a, 1.0 / 512.0);
+    color = mean.rgb / max(mean.a, LEAST_COVERAGE);
     color *= color;  // stored as square roots, for the eye's sake
 #endif
     const Faces faces = filtered_faces(around, ray.direction);
 #if SHOW_TREE
 #if WINDOWS
-    first_level = windows.of[ray.window].shift_level.w;
+    first_level = windows.of[ray.window].level;
 #endif
     color = tree_color(s, color, faces.all);
 #endif
     state.color.rgb += weight * color;
-    state.normal_depth.xyz += weight * visible_normal(faces, ray.direction);
-    if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
-        state.voxel_t_weight.w = floatBitsToUint(weight);
-        state.normal_depth.w = s.t;
+    state.normal += weight * visible_normal(faces, ray.direction);
+    const bool is_heaviest = note_heaviest(state, weight, s.t);
 #if WINDOWS
-        seen_window = ray.window;
+    if (is_heaviest) seen_window = ray.window;
 #endif
-    }
     state.color.a = left;
     return state.color.a > OPAQUE_TRANSMITTANCE;
 }
@@ -65,11 +45,11 @@ bool visit(inout Ray ray, Sample s) {
 // Voxel by voxel, as if they stood in a brick, without a normal.
 bool visit_constant(Ray entered, ConstantRun run) {
 #if HAS_COLOR
-    vec3 color = run.mean.rgb / max(run.mean.a, 1.0 / 512.0);
+    vec3 color = run.mean.rgb / max(run.mean.a, LEAST_COVERAGE);
     color *= color;
     const float coverage = run.mean.a;
 #else
-    const vec3 color = view.surface_color.rgb;
+    const vec3 color = view.surface_color;
     const float coverage = run.mean.r;
 #endif
     for (int voxel = 0; voxel < run.voxels && state.color.a > OPAQUE_TRANSMITTANCE; ++voxel) {
@@ -78,10 +58,7 @@ bool visit_constant(Ray entered, ConstantRun run) {
         const float left = behind(state.color.a, coverage, 1.0);
         const float weight = state.color.a - left;
         state.color.rgb += weight * color;
-        if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
-            state.voxel_t_weight.w = floatBitsToUint(weight);
-            state.normal_depth.w = 0.5 * (t_in + entered.t);
-        }
+        note_heaviest(state, weight, 0.5 * (t_in + entered.t));
         state.color.a = left;
         if (!goes_on) break;
     }
@@ -91,8 +68,8 @@ bool visit_constant(Ray entered, ConstantRun run) {
 
 // Is there light to be stopped on its way to this point?
 bool needs_shadow_ray(PixelRay seen) {
-    if (view.size_shadow.z == 0 || state.color.a > 1.0 - 1.0 / 512.0) return false;
-    const vec3 point = seen.origin + seen.direction * state.normal_depth.w;
+    if (view.casts_shadows == 0 || state.color.a > 1.0 - LEAST_COVERAGE) return false;
+    const vec3 point = seen.origin + seen.direction * state.depth;
     return dot(facing_normal(state, seen.direction), direction_to_light(point)) > 0.0;
 }
 
@@ -113,16 +90,15 @@ void main() {
     const PixelRay shown = seen;
 #endif
     bool waits = needs_shadow_ray(shown);
-#ifdef WITH_MESHES
-    // Until the pixel is written, its place keeps the light that reaches the voxels; negative: not known yet.
-    image_rgba8[launch.index] = floatBitsToUint(waits ? -1.0 : 1.0);
+#if WITH_MESHES
+    keep_light_on_voxels(launch.index, waits ? LIGHT_NOT_KNOWN : 1.0);
     waits = waits || mesh_needs_shadow_ray(mesh, seen, state.color.a);
 #endif
     if (waits) {
         leave_to_shadow_ray(launch.index);
         return;
     }
-#ifdef WITH_MESHES
+#if WITH_MESHES
     write_pixel(launch.pixel, state, 1.0, mesh, 1.0);
 #else
     write_pixel(launch.pixel, state, 1.0);

@@ -1,15 +1,16 @@
 // What rays tell the cache: what they miss, and what they used.
+#include "interop/tile_query.h"
 
-// The last resort of queries for which there is no room: without it the same ones might get it in each pass, and a ray whose
-// data was to come next lose what it had been given to those that ask in between.
+// The last resort of queries for which there is no room: without it the same ones might get it in each pass,
+// and a ray whose data was to come next lose what it had been given to those that ask in between.
 void keep_urgent(uint bit, int rank) {
     const uint word = uint(QUERY_CAPACITY + QUERY_COUNTS + rank);
     if (queries[word] == 0u) atomicMax(queries[word], bit + 1u);
 }
 
 #if TILE_BLOCKS
-// By blocks of pixels: each ray leaves the last tile that it missed, or else the last brick that it used (Crassin et al.
-// 2008, section 5.3).
+// By blocks of pixels: each ray leaves the last tile that it missed, or else the last brick that it used
+// (Crassin et al. 2008, section 5.3).
 uint tile_report = TILE_REPORT_NONE;
 
 void query(uint entry, uint kind, int rank) {
@@ -22,7 +23,8 @@ void touch(int slot) { tile_report = TILE_REPORT_USED | uint(slot); }
 // A pixel has one ray in each pass.
 void leave_report(uint pixel) { tile_reports[pixel] = tile_report; }
 #else
-// By a list. The tile query buffer holds 2 * entry + kind, or 2 * entry_count + entry for a brick that could stand in.
+// By a list. The tile query buffer holds 2 * entry + kind, or 2 * entry_count + entry for a brick that could
+// stand in.
 // @return false when there was no room for it.
 bool ask(uint bit) {
 #if PROGRESSIVE

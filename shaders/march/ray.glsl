@@ -1,4 +1,5 @@
 // A ray, and its steps from cell to cell.
+// Needs cells.glsl, MARCHED_SIDE (of the cube that rays march, in voxels) and the define WINDOWS.
 struct Ray {
     vec3 origin;
     vec3 direction;       // unit
@@ -56,14 +57,15 @@ bool enter_root(inout Ray ray) {
     return true;
 }
 
-// After a start inside the root cube: rounding must not have carried the voxel over a plane that the ray, by what
-// step_over() computes, has still before it. So a ray that starts late takes the way of one that started early.
+// After a start inside the marched cube: rounding must not have carried the voxel over a plane that the ray,
+// by what step_over() computes, has still before it. So a ray that starts late takes the way of one that
+// started early.
 void stay_behind_planes(inout Ray ray) {
     const bvec3 forward = equal(ray.positive, ivec3(1));
     const vec3 bound = vec3(mix(ray.voxel + 1, ray.voxel, forward));
     const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(-1e30), ray.inert);
     const ivec3 back = mix(ivec3(0), mix(ivec3(1), ivec3(-1), forward), greaterThan(t, vec3(ray.t)));
-    ray.voxel = clamp(ray.voxel + back, ivec3(0), ivec3(ROOT_SIDE - 1));
+    ray.voxel = clamp(ray.voxel + back, ivec3(0), ivec3(MARCHED_SIDE - 1));
 }
 
 // Steps over the aligned cell around the ray's voxel, to the voxel behind it; false when the ray has

@@ -1,4 +1,5 @@
 // Pictures of the tree: what a voxel's level and place in its brick say, in place of its colour.
+#include "interop/march.h"
 
 vec3 level_color(float level) {
     const vec3 phase = vec3(LEVEL_PHASE_R, LEVEL_PHASE_G, LEVEL_PHASE_B);
@@ -13,8 +14,8 @@ float level_of(Sample s) {
     return float(first_level) + float(ROOT_SHIFT - M_SHIFT - shift) / float(N_SHIFT);
 }
 
-// Is the sample near where the surface leaves its brick? A side that the surface runs along does not count: it would be
-// marked all over.
+// Is the sample near where the surface leaves its brick? A side that the surface runs along does not count:
+// it would be marked all over.
 bool near_brick_side(Sample s, vec3 normal) {
     const int last = MIP_M(s.mip) - 1;
     const vec3 across = abs(normal);
@@ -27,6 +28,6 @@ bool near_brick_side(Sample s, vec3 normal) {
 
 vec3 tree_color(Sample s, vec3 color, vec3 normal) {
     const vec3 of_level = level_color(level_of(s));
-    if (view.band.z == SHOW_LEVELS) return of_level;
+    if (view.shown == SHOW_LEVELS) return of_level;
     return near_brick_side(s, normal) ? of_level : color;
 }

@@ -1,5 +1,5 @@
-// Through the empty cells of a brick, by its masks.
-// Which block of voxels is empty: -1 when block c is not, else log2 of an empty aligned cell's side, in blocks.
+// Through the empty cells of a brick, by its masks. Which block of voxels is empty: -1 when block c is not,
+// else log2 of an empty aligned cell's side, in blocks.
 int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 #if BLOCKS_A_SIDE == 4
     return empty_shift_4(summary, c);
@@ -7,7 +7,7 @@ int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
     return empty_shift_2(summary.x, c);
 #else
     const int block = c.x + BLOCKS_A_SIDE * (c.y + BLOCKS_A_SIDE * c.z);
-    const uvec2 word = texelFetch(brick_masks, slot * MASK_WORDS_A_SLOT + block / 64).xy;
+    const uvec2 word = texelFetch(brick_masks, slot * MASK_WORDS + block / 64).xy;
     return ((block % 64 < 32 ? word.x : word.y) >> (block % 32) & 1u) != 0u ? -1 : 0;
 #endif
 }
@@ -26,7 +26,7 @@ int skim(inout Ray ray, Place place, inout int turns) {
 #endif
     const int blocks = MIP_BLOCKS_A_SIDE(mip);
     const ivec3 tile = cell_of(ray.voxel, place.tile_shift);
-    const int first_mask = place.slot * MASK_WORDS_A_SLOT + first_mask_of(mip);
+    const int first_mask = place.slot * MASK_WORDS + first_mask_of(mip);
     // A straight line crosses at most 3 M - 2 cells of a brick.
     for (int cell = 0; cell < 3 * BRICK_M; ++cell) {
         ++turns;

@@ -1,9 +1,11 @@
-// Where in a voxel its surface is, as far as the voxel tells: a plane across the mean normal, through the voxel's middle.
+// Where in a voxel its surface is, as far as the voxel tells: a plane across the mean normal, through the
+// voxel's middle.
 //
-// A voxel is up to a diagonal thicker than the surface in it. A ray that only grazes it meets nothing half of the time, but
-// finds its coverage all the same: so a receiver's own bends hid the horizon from it. The planes of neighbours do not join,
-// so they are asked only near the receiver and where the surface looks its way, as its own bends do. Asked of all voxels,
-// they made occluders half a voxel smaller too, and let light through sheets that lie across a ray.
+// A voxel is up to a diagonal thicker than the surface in it. A ray that only grazes it meets nothing half of
+// the time, but finds its coverage all the same: so a receiver's own bends hid the horizon from it. The
+// planes of neighbours do not join, so they are asked only near the receiver and where the surface looks its
+// way, as its own bends do. Asked of all voxels, they made occluders half a voxel smaller too, and let light
+// through sheets that lie across a ray.
 //
 // Needs own_surface.glsl and pool/brick_normals.glsl.
 
@@ -12,8 +14,8 @@
 // Cosine between normals, from which on a surface may be the receiver's own.
 #define OWN_BEND 0.5
 
-// May the ray, which has just come through the voxel, pass by the surface in it? `reach`: from the receiver, in the ray's
-// units.
+// May the ray, which has just come through the voxel, pass by the surface in it? `reach`: from the receiver,
+// in the ray's units.
 bool passes_by(Ray ray, Sample s, float reach) {
     if (s.t >= reach) return false;
     const vec3 normal = mean_normal(texelFetch(brick_normal, s.texel + 1 + s.voxel, 0));

@@ -1,7 +1,7 @@
-// One workgroup is a block of pixels. Of the tiles that its rays left it keeps the first few different ones: those that were
-// missed, then, where there is room, bricks that were used (Crassin et al. 2008, section 5.3).
-#include "interop/config.h"
-#include "interop/bindings.h"
+// One workgroup is a block of pixels. Of the tiles that its rays left it keeps the first few different ones:
+// those that were missed, then, where there is room, bricks that were used (Crassin et al. 2008, section
+// 5.3).
+#include "interop/tile_query.h"
 
 #define BLOCK_PIXELS (TILE_BLOCK_SIDE * TILE_BLOCK_SIDE)
 

@@ -1,6 +1,7 @@
-// A descent begins at the lowest node that holds both the ray's voxel and that of the descent before: the DDA with a
-// mini-stack of Crassin 2007, section 3.4.3. The stack is a short one (Horn et al. 2007) of the four lowest nodes, in
-// registers, because arrays with an index live in memory; a ray that climbs further begins at the root.
+// A descent begins at the lowest node that holds both the ray's voxel and that of the descent before: the DDA
+// with a mini-stack of Crassin 2007, section 3.4.3. The stack is a short one (Horn et al. 2007) of the four
+// lowest nodes, in registers, because arrays with an index live in memory; a ray that climbs further begins
+// at the root.
 uint trail_0;  // entry of the lowest node whose children the descent looked at
 uint trail_1;  // its parent, and so on
 uint trail_2;

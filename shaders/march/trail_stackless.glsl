@@ -1,7 +1,7 @@
-// A descent begins at the node whose children the ray crosses, as long as it is among them: the recursive DDA without a
-// stack of Crassin 2007, section 3.4.3, which computes everything anew from the ray's place at each step down or up. There
-// a node points to its parent; here a ray that leaves its node climbs by a descent from the root, for a node entry
-// has no room for the parent.
+// A descent begins at the node whose children the ray crosses, as long as it is among them: the recursive DDA
+// without a stack of Crassin 2007, section 3.4.3, which computes everything anew from the ray's place at each
+// step down or up. There a node points to its parent; here a ray that leaves its node climbs by a descent
+// from the root, for a node entry has no room for the parent.
 uint trail_entry;
 ivec3 trail_voxel;
 int trail_shift;  // of the node's tile; -1: none

@@ -1,8 +1,10 @@
 // Which way faces what a ray sees of a voxel's surface.
 //
-// Of a voxel's two normals (pool/brick_normals.glsl) those count that face the viewer, by how much of the picture they
-// cover: what turns its back is hidden behind them. Where none faces the viewer, a sheet is seen from its back; or the
-// surface is seen edge on at a silhouette, and its mean looks away a little because it bends away in the voxel.
+// Of a voxel's two normals (pool/brick_normals.glsl) those count that face the viewer, by how much of the
+// picture they cover: what turns its back is hidden behind them. Where none faces the viewer, a sheet is seen
+// from its back; or the surface is seen edge on at a silhouette, and its mean looks away a little because it
+// bends away in the voxel.
+#include "interop/march.h"
 #include "pool/brick_normals.glsl"
 
 struct Faces {

@@ -1,9 +1,5 @@
 // One thread is one waiting primary ray through a volume.
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 VOLUME_STEPS=2
-// defines: TREE_N=2 BRICK_M=8 MAX_LEVEL=7 HAS_COLOR=0 PROGRESSIVE=1 SHOW_TREE=1 TRAVERSAL=1 VOLUME_STEPS=1 HAS_CONSTANT=1
-// defines: TREE_N=4 BRICK_M=64 MAX_LEVEL=0 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=1 TRAVERSAL=0 VOLUME_STEPS=16
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 VOLUME_STEPS=1 WITH_MESHES WITH_PROXY
-// defines: TREE_N=4 BRICK_M=16 MAX_LEVEL=4 HAS_COLOR=0 PROGRESSIVE=0 SHOW_TREE=0 TRAVERSAL=2 VOLUME_STEPS=2 TILE_BLOCKS=1
+#include "interop/march.h"
 #define RAYS_WIDEN 1
 #define VISIT_TURNS VOLUME_STEPS
 #include "march/march.glsl"
@@ -16,8 +12,7 @@
 
 #include "march/launch.glsl"
 
-
-// Of a volume, `state` gathers in color.rgb what is seen without the light, in normal_depth.xyz what the light adds.
+// Of a volume, `state` gathers in color.rgb what is seen without the light, in normal what the light adds.
 
 // Light on a place in the volume.
 struct Lit {
@@ -31,7 +26,7 @@ Lit light_at(Ray ray, float t, vec3 gradient) {
     const float surface = volume.full_gradient > 0.0 ? min(steep / volume.full_gradient, 1.0) : 0.0;
     const vec3 normal = (dot(gradient, ray.direction) < 0.0 ? gradient : -gradient) / max(steep, 1e-6);
     const float facing = max(dot(normal, direction_to_light(ray.origin + ray.direction * t)), 0.0);
-    const float ambient = view.light_color.w;
+    const float ambient = view.ambient;
     return Lit(ambient * mix(1.0, 0.75 + 0.25 * normal.y, surface), (1.0 - ambient) * mix(1.0, facing, surface));
 }
 
@@ -40,24 +35,24 @@ float gather(vec4 optics, float world_length, Lit lit) {
     const float weight = state.color.a * (1.0 - exp(-optics.a * world_length));
     const vec3 color = optics.rgb / max(optics.a, 1e-30);
     state.color.rgb += weight * lit.sky * color;
-    state.normal_depth.xyz += weight * lit.direct * color;
+    state.normal += weight * lit.direct * color;
     state.color.a -= weight;
     return weight;
 }
 
-// Where the pixel's shadow ray will start: at the depth behind which less than half of what is seen lies. It passes through
-// voxels evenly, so a surface is not shadowed in steps. Where more than half is let through, the voxel that weighs most.
+// Where the pixel's shadow ray will start: at the depth behind which less than half of what is seen lies. It
+// passes through voxels evenly, so a surface is not shadowed in steps. Where more than half is let through,
+// the voxel that weighs most.
 #define HALF_PASSED 2.0  // weighs more than any voxel
 void note_depth(float t_in, float t_out, float weight) {
     const float after = state.color.a;
     const float before = after + weight;
     if (before > 0.5 && after <= 0.5) {
         const float share = log(2.0 * before) / max(log(before / max(after, 1e-9)), 1e-6);
-        state.normal_depth.w = mix(t_in, t_out, clamp(share, 0.0, 1.0));
-        state.voxel_t_weight.w = floatBitsToUint(HALF_PASSED);
-    } else if (weight > uintBitsToFloat(state.voxel_t_weight.w)) {
-        state.normal_depth.w = 0.5 * (t_in + t_out);
-        state.voxel_t_weight.w = floatBitsToUint(weight);
+        state.depth = mix(t_in, t_out, clamp(share, 0.0, 1.0));
+        state.weight = HALF_PASSED;
+    } else {
+        note_heaviest(state, weight, 0.5 * (t_in + t_out));
     }
 }
 
@@ -97,11 +92,11 @@ void main() {
     if (state.color.a <= OPAQUE_TRANSMITTANCE) {
         // What little shines through is the volume's own: no background in an opaque thing.
         state.color.rgb /= 1.0 - state.color.a;
-        state.normal_depth.xyz /= 1.0 - state.color.a;
+        state.normal /= 1.0 - state.color.a;
         state.color.a = 0.0;
     }
-    const vec3 direct = state.normal_depth.xyz;
-    if (view.size_shadow.z != 0 && max(direct.x, max(direct.y, direct.z)) > 1.0 / 1024.0) {
+    const vec3 direct = state.normal;
+    if (view.casts_shadows != 0 && max(direct.x, max(direct.y, direct.z)) > 1.0 / 1024.0) {
         leave_to_shadow_ray(launch.index);
     } else {
         write_volume_pixel(launch.pixel, state, 1.0);

@@ -1,14 +1,17 @@
 // What a ray takes from a voxel of a volume: the integral of a transfer function along its chord.
 //
-// Densities are interpolated trilinearly between the centres of voxels. Along each step of a chord they are taken as
-// linear, and what a linear density emits and absorbs is looked up in a table (pre-integration: Engel, Kraus and Ertl
-// 2001, section 3). Opacity is 1 - exp(-extinction * length), in world units, so it depends on no step.
+// Densities are interpolated trilinearly between the centres of voxels. Along each step of a chord they are
+// taken as linear, and what a linear density emits and absorbs is looked up in a table (pre-integration:
+// Engel, Kraus and Ertl 2001, section 3). Opacity is 1 - exp(-extinction * length), in world units, so it
+// depends on no step.
 //
 // Needs the define VOLUME_STEPS: steps a voxel's chord.
+#include "interop/volume.h"
 layout(binding = TEXTURE_TRANSFER) uniform sampler2D transfer;
 layout(std140, binding = UBO_VOLUME) uniform VolumeBlock { VolumeView volume; };
 
-// Densities of a voxel and those around it: columns are y, rows x. The brick's border has those outside the brick.
+// Densities of a voxel and those around it: columns are y, rows x. The brick's border has those outside the
+// brick.
 struct Neighbours {
     mat3 below;  // z - 1
     mat3 level;
@@ -32,8 +35,8 @@ float mixed(Neighbours v, vec3 x, vec3 y, vec3 z) {
     return dot(vec3(dot(x * v.below, y), dot(x * v.level, y), dot(x * v.above, y)), z);
 }
 
-// Weights of the neighbours before, at and behind, for a place in [-0.5, 0.5] from the voxel's centre: trilinear
-// interpolation, whichever side of the centre the place is on.
+// Weights of the neighbours before, at and behind, for a place in [-0.5, 0.5] from the voxel's centre:
+// trilinear interpolation, whichever side of the centre the place is on.
 vec3 weights(float u) { return vec3(max(-u, 0.0), 1.0 - abs(u), max(u, 0.0)); }
 // Those of the difference between half a voxel behind and half a voxel before.
 vec3 differences(float u) { return vec3(u - 0.5, -2.0 * u, u + 0.5); }
@@ -80,8 +83,9 @@ float density_on(Chord chord, Neighbours v, float steps) {
     return density_at(v, clamp(chord.middle + (chord.from + steps * chord.step) * chord.direction, -0.5, 0.5));
 }
 
-// Mean emission and extinction along a step. The density bends on its way from s0 over s1 to s2: what two straight halves
-// say and what a straight whole says tell where finer halves would lead (Richardson's extrapolation).
+// Mean emission and extinction along a step. The density bends on its way from s0 over s1 to s2: what two
+// straight halves say and what a straight whole says tell where finer halves would lead (Richardson's
+// extrapolation).
 vec4 step_optics(float s0, float s1, float s2) {
     const vec4 halves = 0.5 * (mean_optics(s0, s1) + mean_optics(s1, s2));
     return max((4.0 * halves - mean_optics(s0, s2)) / 3.0, vec4(0.0));

@@ -1,12 +1,15 @@
 // Windows: depth without limit for rays that count in 32 bits.
 //
-// A window is the cube of 2^3 tiles of one level that are nearest to the eye; there is one for each level, the finest first,
-// each inside the next. A ray marches a window in voxels that are a fixed number of levels finer than its tiles, with
-// positions from its low corner. Where it leaves the window it goes on in the next: its distances are divided by N, which
-// is exact, and so is the voxel that it stands in, because windows end where tiles do. So nothing is crossed twice or left
-// out, and near the eye as far from it a ray has the same bits for each voxel that its cone asks for. Descents start at
-// the window's tiles, not at the root, and take as many steps however deep the tree is. (The nesting is that of clip maps:
-// Tanner, Migdal and Jones 1998.)
+// A window is the cube of 2^3 tiles of one level that are nearest to the eye; there is one for each level,
+// the finest first, each inside the next. A ray marches a window in voxels that are a fixed number of levels
+// finer than its tiles, with positions from its low corner. Where it leaves the window it goes on in the
+// next: its distances are divided by N, which is exact, and so is the voxel that it stands in, because
+// windows end where tiles do. So nothing is crossed twice or left out, and near the eye as far from it a ray
+// has the same bits for each voxel that its cone asks for. Descents start at the window's tiles, not at the
+// root, and take as many steps however deep the tree is. (The nesting is that of clip maps: Tanner, Migdal
+// and Jones 1998.)
+#include "interop/tile_query.h"
+#include "interop/windows.h"
 layout(std140, binding = UBO_WINDOWS) uniform WindowBlock {
     ivec4 count;
     MarchWindow of[MAX_WINDOWS];
@@ -28,18 +31,19 @@ int window_rank(Ray ray) {
 
 // Counts in the voxels of the next window.
 void coarsen(inout Ray ray) {
-    const ivec3 shift = windows.of[ray.window].shift_level.xyz;
+    const ivec3 shift = windows.of[ray.window].shift;
     const float scale = 1.0 / float(TREE_N);
     ++ray.window;
     // The eye is known better than what is left of it after rounding in each window.
-    ray.origin = ray.from_eye ? windows.of[ray.window].eye.xyz : ray.origin * scale + vec3(shift);
+    ray.origin = ray.from_eye ? windows.of[ray.window].eye : ray.origin * scale + vec3(shift);
     ray.voxel = cell_of(ray.voxel, N_SHIFT) + shift;
     ray.t *= scale;
     ray.t_end *= scale;
     ray.cone_base *= scale;
 }
 
-// Goes on in the next window that holds the ray's voxel; false when it was the last, or the ray has come to its end.
+// Goes on in the next window that holds the ray's voxel; false when it was the last, or the ray has come to
+// its end.
 bool leave_window(inout Ray ray) {
     if (ray.t >= ray.t_end) return false;
     while (ray.window + 1 < windows.count.x) {

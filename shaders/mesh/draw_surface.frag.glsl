@@ -1,6 +1,6 @@
 // Colour and normals of the nearest triangle at each pixel.
-// defines: MASKED=0
-// defines: MASKED=1
+#include "interop/mesh.h"
+#include "interop/surface.h"
 #include "mesh/mesh_material.glsl"
 
 layout(binding = TEXTURE_MESH_NEAREST) uniform sampler2D mesh_nearest;
@@ -18,8 +18,8 @@ void main() {
 #if MASKED
     if (!is_shown(point, material)) discard;
 #endif
-    const vec3 plane = dot(triangle.plane.xyz, seen.direction) > 0.0 ? -triangle.plane.xyz : triangle.plane.xyz;
+    const vec3 plane = dot(triangle.normal, seen.direction) > 0.0 ? -triangle.normal : triangle.normal;
     const vec3 color = color_at(point, material);
     surface = uvec4(packHalf2x16(color.rg), packHalf2x16(vec2(color.b, 1.0)),
-                    encode_normal(normal_at(point, triangle.plane.xyz)), encode_normal(plane));
+                    encode_normal(normal_at(point, triangle.normal)), encode_normal(plane));
 }

@@ -1,6 +1,5 @@
 // The distance of the nearest triangle at each pixel; blending keeps the least.
-// defines: MASKED=0
-// defines: MASKED=1
+#include "interop/mesh.h"
 #include "mesh/mesh_fragment.glsl"
 #if MASKED
 #include "mesh/mesh_material.glsl"

@@ -1,5 +1,5 @@
-// The first and the last face of a proxy at each pixel, and how many more fronts than backs there are: all by blending, so
-// in any order.
+// The first and the last face of a proxy at each pixel, and how many more fronts than backs there are: all by
+// blending, so in any order.
 #include "mesh/mesh_fragment.glsl"
 
 layout(location = 0) out vec2 span;    // least of both is kept: (first, -last)

@@ -1,14 +1,15 @@
-// Where the ray through a pixel's centre meets the triangle that is drawn there. The rasterizer says which pixels a
-// triangle covers; all else comes from the ray and the triangle's plane, and nothing is interpolated.
-#include "interop/bindings.h"
-#include "interop/config.h"
-#include "interop/types.h"
+// Where the ray through a pixel's centre meets the triangle that is drawn there. The rasterizer says which
+// pixels a triangle covers; all else comes from the ray and the triangle's plane, and nothing is
+// interpolated.
+#include "interop/march.h"
+#include "interop/mesh.h"
 
 layout(std140, binding = UBO_VIEW) uniform ViewBlock { MarchView view; };
 layout(std430, binding = SSBO_MESH_TRIANGLES) restrict readonly buffer MeshTriangleBlock {
     MeshTriangle mesh_triangles[];
 };
 
+#define WINDOWS 0
 #include "march/pixel_ray.glsl"
 
 struct MeshHit {
@@ -18,11 +19,11 @@ struct MeshHit {
 
 // Between the depths of the vertices, whatever rounding makes of a triangle that is seen edge on.
 MeshHit hit_of(MeshTriangle triangle, PixelRay seen) {
-    const vec3 origin = seen.origin - view.eye.xyz;
-    precise const float along = dot(triangle.plane.xyz, seen.direction);
-    precise const float height = triangle.plane.w - dot(triangle.plane.xyz, origin);
-    precise const float slant = 1.0 / dot(seen.direction, view.forward.xyz);
-    precise const float t = abs(along) > 1e-30 ? height / along : triangle.corner.w * slant;
-    precise const float clamped = clamp(t, triangle.corner.w * slant, triangle.second.w * slant);
+    const vec3 origin = seen.origin - view.eye;
+    precise const float along = dot(triangle.normal, seen.direction);
+    precise const float height = triangle.height - dot(triangle.normal, origin);
+    precise const float slant = 1.0 / dot(seen.direction, view.forward);
+    precise const float t = abs(along) > 1e-30 ? height / along : triangle.nearest * slant;
+    precise const float clamped = clamp(t, triangle.nearest * slant, triangle.furthest * slant);
     return MeshHit(clamped, origin + seen.direction * clamped);
 }

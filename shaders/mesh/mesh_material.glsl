@@ -1,17 +1,19 @@
 // What the surface at a hit looks like: by the code that colours voxels.
+#include "interop/mesh.h"
+#include "interop/surface.h"
 #include "mesh/mesh_fragment.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_color.glsl"
 
 uniform uint first;  // triangle of the batch, in the chunk
 
-uint material_number() { return surface_triangles[first + uint(gl_PrimitiveID)].vertices_material.w; }
+uint material_number() { return surface_triangles[first + uint(gl_PrimitiveID)].material; }
 
 SurfacePoint surface_point(MeshTriangle triangle, MeshHit hit) {
-    const vec3 from_corner = hit.from_eye - triangle.corner.xyz;
-    const float b = dot(from_corner, triangle.second.xyz), c = dot(from_corner, triangle.third.xyz);
+    const vec3 from_corner = hit.from_eye - triangle.corner;
+    const float b = dot(from_corner, triangle.second), c = dot(from_corner, triangle.third);
     const vec3 weights = max(vec3(1.0 - b - c, b, c), 0.0);
-    return SurfacePoint(surface_triangles[first + uint(gl_PrimitiveID)].vertices_material.xyz,
+    return SurfacePoint(surface_triangles[first + uint(gl_PrimitiveID)].vertices,
                         weights / (weights.x + weights.y + weights.z));
 }
 

@@ -1,5 +1,6 @@
-// The rasterized mesh at a pixel: x, y: base colour (linear, half floats); z: normal; w: normal of the triangle's plane,
-// turned to the viewer.
+// The rasterized mesh at a pixel: x, y: base colour (linear, half floats); z: normal; w: normal of the
+// triangle's plane, turned to the viewer.
+#include "interop/mesh.h"
 #include "voxelize/octahedral.glsl"
 
 layout(binding = TEXTURE_MESH_NEAREST) uniform sampler2D mesh_nearest;
@@ -7,7 +8,8 @@ layout(binding = TEXTURE_MESH_SURFACE) uniform usampler2D mesh_surface;
 uniform int mesh_first_row;     // of the picture, in these textures
 uniform bool voxels_hidden;     // they are not shown, and cast shadows all the same
 uniform bool mesh_shadows;      // voxels cast shadows on meshes
-uniform float mesh_own_height;  // voxels whose centres are not so far over the plane are its own (in their sides)
+// Voxels whose centres are not so far over the plane are its own (in their sides).
+uniform float mesh_own_height;
 
 struct MeshPixel {
     float t;      // distance from the ray's origin; MESH_MISS = nothing there
@@ -18,7 +20,7 @@ struct MeshPixel {
 
 // `pixel` in the band.
 MeshPixel mesh_pixel(ivec2 pixel) {
-    const ivec2 place = pixel + ivec2(0, view.band.x - mesh_first_row);
+    const ivec2 place = pixel + ivec2(0, view.first_row - mesh_first_row);
     const uvec4 surface = texelFetch(mesh_surface, place, 0);
     MeshPixel mesh = MeshPixel(texelFetch(mesh_nearest, place, 0).r, vec3(0.0), vec3(0.0), vec3(0.0));
     if (surface.w != 0u) {

@@ -1,4 +1,5 @@
 // A vertex of a mesh, where pixel_ray() sees it. Rows go downwards, so fronts are clockwise.
+#include "interop/surface.h"
 #include "mesh/mesh_view.glsl"
 
 layout(location = ATTRIBUTE_POSITION) in ivec3 position;  // lattice units
@@ -7,7 +8,9 @@ invariant gl_Position;
 
 void main() {
     const dvec3 p = from_eye(position);
-    const double w = dot(mesh_view.along.xyz, p) + mesh_view.along.w;
-    // Clipping at -w <= z is clipping at w >= down.w. Nothing else is made of z: fragments know their distance.
-    gl_Position = vec4(dvec4(dot(mesh_view.across.xyz, p), dot(mesh_view.down.xyz, p), w - 2.0lf * mesh_view.down.w, w));
+    const double w = dot(mesh_view.along, p) + mesh_view.skipped;
+    // Clipping at -w <= z is clipping at w >= nearest. Nothing else is made of z: fragments know their
+    // distance.
+    const double z = w - 2.0lf * mesh_view.nearest;
+    gl_Position = vec4(dvec4(dot(mesh_view.across, p), dot(mesh_view.down, p), z, w));
 }

@@ -1,5 +1,5 @@
-// What a texel of brick_normal (10 + 10 + 10 + 2 bits) holds: two unit normals of the voxel's surface, by the octahedral map
-// (Cigolle et al. 2014), and the second one's share, at most a half.
+// What a texel of brick_normal (10 + 10 + 10 + 2 bits) holds: two unit normals of the voxel's surface, by the
+// octahedral map (Cigolle et al. 2014), and the second one's share, at most a half.
 //     bits 0 to 17   the first: 9 + 9, from 1 on; 0: there is none
 //     bits 18 to 29  the second: 6 + 6
 //     bits 30 to 31  its share, in sixths

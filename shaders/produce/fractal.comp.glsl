@@ -1,11 +1,10 @@
 // One thread is one voxel of a new brick of the fractal, border included.
-// defines: TREE_N=4 BRICK_M=16
-// defines: TREE_N=2 BRICK_M=8
-// defines: TREE_N=3 BRICK_M=27
+#include "interop/produce.h"
 #include "produce/fractal.glsl"
 #include "pool/brick_normals.glsl"
 
-layout(local_size_x = 64) in;
+#define GROUP_SIZE 64
+#include "common/thread.glsl"
 
 layout(r8, binding = IMAGE_BRICK_COLOR) writeonly uniform image3D brick_color;
 layout(rgb10_a2, binding = IMAGE_BRICK_NORMAL) writeonly uniform image3D brick_normal;
@@ -36,15 +35,16 @@ ivec3 pick(ivec3 offset, ivec3 before, ivec3 here, ivec3 after) {
 }
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    const uint i = thread_index();
     if (i >= tile_count * uint(VOXELS)) return;
     const uint tile = i / uint(VOXELS);
     const int v = int(i % uint(VOXELS));
     const ivec3 place = ivec3(v % SIDE, v / SIDE % SIDE, v / (SIDE * SIDE));
-    const uint neighbours = tiles[tile].neighbours.x;
+    const uint neighbours = tiles[tile].neighbours;
 
-    // Any projection of an occupied voxel of the fractal along an axis is full, at any depth: a whole face is covered.
-    // One of the sponge is not, but its voxels are taken for solid at each level (Crassin et al. 2008, section 7).
+    // Any projection of an occupied voxel of the fractal along an axis is full, at any depth: a whole face is
+    // covered. One of the sponge is not, but its voxels are taken for solid at each level (Crassin et al.
+    // 2008, section 7).
     const Voxel here = voxel_at(place - 1);
     const float covered = occupied(neighbours, here) ? 1.0 : 0.0;
     const Voxel before = voxel_at(place - 2);
@@ -57,7 +57,7 @@ void main() {
         if (occupied(neighbours, near)) away -= offset;
     }
     const float size = length(vec3(away));
-    const ivec3 texel = tiles[tile].slot_texel.xyz + place;
+    const ivec3 texel = tiles[tile].first_texel + place;
     imageStore(brick_color, texel, vec4(covered));
     imageStore(brick_normal, texel, covered * size > 0.0 ? pack_normal(vec3(away)) : vec4(0.0));
 }

@@ -1,6 +1,6 @@
-// The set of renderer/produce/fractal_content.h inside one tile and around it: the sponge where N = 3, else the fractal.
-#include "interop/bindings.h"
-#include "interop/types.h"
+// The set of renderer/produce/fractal_content.h inside one tile and around it: the sponge where N = 3, else
+// the fractal.
+#include "interop/produce.h"
 
 layout(std430, binding = SSBO_BRICK_TILES) readonly buffer TileBlock { FractalTile tiles[]; };
 
@@ -8,7 +8,8 @@ uniform uint tile_count;
 
 // What in_set() asks of a place in a tile, each coordinate by itself.
 #if TREE_N == 3
-// Bit i: is its digit i a 1, so that a cube of 27 on the way down lies in the middle of this axis? Of two axes none may.
+// Bit i: is its digit i a 1, so that a cube of 27 on the way down lies in the middle of this axis? Of two
+// axes none may.
 ivec3 digits_of(ivec3 place) {
     ivec3 ones = ivec3(0);
     int bit = 1;

@@ -1,20 +1,20 @@
-// One thread is one word of a new brick's masks. A tile that has a brick is occupied, so they are the same in all.
-// defines: TREE_N=4 BRICK_M=16
-// defines: TREE_N=2 BRICK_M=8
-// defines: TREE_N=3 BRICK_M=27
+// One thread is one word of a new brick's masks. A tile that has a brick is occupied, so they are the same in
+// all.
+#include "interop/produce.h"
 #include "produce/fractal.glsl"
 #include "pool/brick_masks.glsl"
 
-layout(local_size_x = 64) in;
+#define GROUP_SIZE 64
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_MASKS) writeonly buffer MaskBlock { uvec2 brick_masks[]; };
 
 ivec3 place_of(int i, int side) { return ivec3(i % side, i / side % side, i / (side * side)); }
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= tile_count * uint(MASK_WORDS_A_SLOT)) return;
-    const int word = int(i % uint(MASK_WORDS_A_SLOT));
+    const uint i = thread_index();
+    if (i >= tile_count * uint(MASK_WORDS)) return;
+    const int word = int(i % uint(MASK_WORDS));
     const bool is_summary = word < SUMMARY_WORDS;
     const int block = word - SUMMARY_WORDS;
     uvec2 mask = uvec2(0u);
@@ -30,6 +30,6 @@ void main() {
         if (bit < 32) mask.x |= 1u << bit;
         else mask.y |= 1u << (bit - 32);
     }
-    const uint slot = uint(tiles[i / uint(MASK_WORDS_A_SLOT)].slot_texel.w);
-    brick_masks[slot * uint(MASK_WORDS_A_SLOT) + uint(word)] = mask;
+    const uint slot = uint(tiles[i / uint(MASK_WORDS)].slot);
+    brick_masks[slot * uint(MASK_WORDS) + uint(word)] = mask;
 }

@@ -1,14 +1,12 @@
-// One thread is one block of voxels of a mip of a new brick: it packs their occupancy into the 64-bit mask that rays skip
-// by. One dispatch a mip, finest first: a voxel counts when a finer one in it does, which the alpha mask's samples alone
-// would not always say.
-// defines: BRICK_M=27 HAS_COLOR=1 HAS_MASK=1
-// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1
-// defines: BRICK_M=16 BRICK_MIPS=0 HAS_COLOR=1 HAS_MASK=0
-// defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=1
+// One thread is one block of voxels of a mip of a new brick: it packs their occupancy into the 64-bit mask
+// that rays skip by. One dispatch a mip, finest first: a voxel counts when a finer one in it does, which the
+// alpha mask's samples alone would not always say.
+#include "interop/produce.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
 
-layout(local_size_x = 64) in;
+#define GROUP_SIZE 64
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
 
@@ -20,7 +18,8 @@ uniform int mip;
 bool any_finer(uint slot, ivec3 v) {
     const int blocks = MIP_BLOCKS_A_SIDE(mip - 1);
     const ivec3 c = 2 * v >> 2;
-    const uint word = slot * uint(MASK_WORDS_A_SLOT) + uint(first_mask_of(mip - 1) + c.x + blocks * (c.y + blocks * c.z));
+    const uint word =
+        slot * uint(MASK_WORDS) + uint(first_mask_of(mip - 1) + c.x + blocks * (c.y + blocks * c.z));
     const ivec3 first = 2 * v & 3;
     const uvec2 mask = brick_masks[word];
     return ((first.z == 0 ? mask.x : mask.y) >> (first.x + 4 * first.y) & 0x00330033u) != 0u;
@@ -28,7 +27,7 @@ bool any_finer(uint slot, ivec3 v) {
 #endif
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    const uint i = thread_index();
     const uint blocks = uint(MIP_BLOCKS(mip));
     if (i >= tile_count * blocks) return;
     const uint tile = i / blocks;
@@ -37,7 +36,7 @@ void main() {
     const ivec3 low = BLOCK_SIDE * ivec3(block % blocks_a_side, block / blocks_a_side % blocks_a_side,
                                          block / (blocks_a_side * blocks_a_side));
     const int side = min(BLOCK_SIDE, MIP_M(mip));
-    const uint slot = uint(tiles[tile].slot.x);
+    const uint slot = uint(tiles[tile].slot);
     uvec2 mask = uvec2(0u);
     for (int z = 0; z < side; ++z) {
         for (int y = 0; y < side; ++y) {
@@ -54,5 +53,5 @@ void main() {
             }
         }
     }
-    brick_masks[slot * uint(MASK_WORDS_A_SLOT) + uint(first_mask_of(mip) + block)] = mask;
+    brick_masks[slot * uint(MASK_WORDS) + uint(first_mask_of(mip) + block)] = mask;
 }

@@ -1,12 +1,11 @@
-// One thread is one voxel of a mip of a new brick, border included: it turns what was gathered into the pool's texels, and
-// leaves the scratch empty for the next batch.
-// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1
-// defines: BRICK_M=8 BRICK_MIPS=0 HAS_COLOR=0
-// defines: BRICK_M=27 HAS_COLOR=1
+// One thread is one voxel of a mip of a new brick, border included: it turns what was gathered into the
+// pool's texels, and leaves the scratch empty for the next batch.
+#include "interop/produce.h"
 #include "produce/scratch.glsl"
 #include "produce/two_normals.glsl"
 
-layout(local_size_x = 64) in;
+#define GROUP_SIZE 64
+#include "common/thread.glsl"
 
 #if HAS_COLOR
 layout(rgba8, binding = IMAGE_BRICK_COLOR) writeonly uniform image3D brick_color;
@@ -17,8 +16,8 @@ layout(rgb10_a2, binding = IMAGE_BRICK_NORMAL) writeonly uniform image3D brick_n
 
 uniform uint tile_count;
 
-// The share of the voxel's face that the surface covers, seen along the axis where it covers most: what a ray through
-// the voxel meets. A sheet covers all of it, however thin; a wire, as much as it is wide.
+// The share of the voxel's face that the surface covers, seen along the axis where it covers most: what a ray
+// through the voxel meets. A sheet covers all of it, however thin; a wire, as much as it is wide.
 float coverage(uvec2 mask) {
     const uint along_z = (mask.x | mask.x >> 16 | mask.y | mask.y >> 16) & 0xFFFFu;
     uvec2 y = mask | mask >> 4;
@@ -44,7 +43,7 @@ vec4 packed_normals(uint sums, float weight) {
 }
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    const uint i = thread_index();
     if (i >= tile_count * uint(VOXELS)) return;
     const uint tile = i / uint(VOXELS);
     int v = int(i % uint(VOXELS));
@@ -71,7 +70,7 @@ void main() {
         scratch[2u * i + 1u] = 0u;
         for (uint w = 0u; w < uint(SUM_WORDS); ++w) scratch[sums + w] = 0u;
     }
-    const ivec3 texel = slot_texel(tiles[tile].slot.x, mip) + place;
+    const ivec3 texel = first_texel(tiles[tile].slot, mip) + place;
     // Colours are weighted with the coverage, so that a filtered fetch does not mix in what is empty.
 #if HAS_COLOR
     imageStore(brick_color, texel, vec4(color * covered, covered));

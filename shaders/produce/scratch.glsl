@@ -1,12 +1,10 @@
 // What the producer gathers for each voxel of the batch, border included, before it is packed into the pool.
 // Sums are whole numbers, so the order of the threads does not show in the brick.
-#include "interop/config.h"
-#include "interop/bindings.h"
-#include "interop/types.h"
+#include "interop/produce.h"
 #include "pool/brick_levels.glsl"
 
-// Every mip of a brick is gathered like a brick of its own, from the triangles themselves: so it equals the same part of the
-// parent's brick, and of its neighbours' borders, bit for bit.
+// Every mip of a brick is gathered like a brick of its own, from the triangles themselves: so it equals the
+// same part of the parent's brick, and of its neighbours' borders, bit for bit.
 #define MIP_SIDE(mip) (MIP_M(mip) + 2)  // voxels a side, border included
 #define MIP_VOXELS(mip) CUBE(MIP_SIDE(mip))
 #define VOXELS                                                                                            \
@@ -18,7 +16,8 @@
 //     sums       SUM_WORDS a voxel, from word `sums_offset` on
 #define SUM_WEIGHT 0               // finer voxels, counted for each triangle
 #define SUM_NORMAL 1               // 3 words: weighted normals, NORMAL_UNIT = 1
-#define SUM_MOMENTS 4              // 5 words: products of the normals' components, xx, xy, xz, yy, yz, weighted alike
+// 5 words: products of the normals' components, xx, xy, xz, yy, yz, weighted alike.
+#define SUM_MOMENTS 4
 #define SUM_COLOR 9                // 3 words: weighted linear colours, COLOR_UNIT = 1
 #if HAS_COLOR
 #define SUM_WORDS 12
@@ -27,7 +26,8 @@
 #endif
 #define NORMAL_UNIT 511.0
 #define COLOR_UNIT 1023.0
-#define WEIGHT_LIMIT 1048576u      // more would overflow the sums: triangles that come later, in the threads' order, are left out
+// More would overflow the sums: triangles that come later, in the threads' order, are left out.
+#define WEIGHT_LIMIT 1048576u
 
 layout(std430, binding = SSBO_BRICK_TILES) readonly buffer TileBlock { BrickTile tiles[]; };
 layout(std430, binding = SSBO_BRICK_SCRATCH) buffer ScratchBlock { uint scratch[]; };

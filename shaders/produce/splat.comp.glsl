@@ -1,14 +1,14 @@
 // One thread is one pair: a triangle, and some rows of a mip of a tile that it may touch. It finds the brick
-// voxels that the triangle meets, exactly as the voxelizer does, marks their finer voxels and adds its attributes.
-// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1
-// defines: BRICK_M=16 BRICK_MIPS=0 HAS_COLOR=1 HAS_MASK=0
-// defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=0
-// defines: BRICK_M=27 HAS_COLOR=1 HAS_MASK=1
+// voxels that the triangle meets, exactly as the voxelizer does, marks their finer voxels and adds its
+// attributes.
+#include "interop/produce.h"
+#include "interop/surface.h"
 #include "produce/scratch.glsl"
-#if BRICK_M % 3 == 0
+#if CELL_BASE == 3
 #define ANY_VOXEL_SIDE 1
 #define FINER(size) ((size) / 4)
 #else
+#define ANY_VOXEL_SIDE 0
 #define FINER(size) ((size) - 2)
 #endif
 #include "voxelize/exact_triangle.glsl"
@@ -16,7 +16,8 @@
 #include "voxelize/surface_attributes.glsl"
 #include "voxelize/surface_color.glsl"
 
-layout(local_size_x = 64) in;
+#define GROUP_SIZE 64
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_PAIRS) readonly buffer PairBlock { BrickPair pairs[]; };
 
@@ -64,9 +65,9 @@ SurfacePoint point_under(Patch s, vec3 lattice) {
     return SurfacePoint(s.vertices, vec3(1.0 - w.x - w.y, w));
 }
 
-// The marks of the triangle in the 4^3 finer voxels of voxel `v`. A finer row in doubt takes what it may hold: coverage is
-// an estimate, and whether the voxel is occupied at all has been decided exactly. Of an alpha-masked triangle count the
-// finer voxels under whose centres it is not cut away.
+// The marks of the triangle in the 4^3 finer voxels of voxel `v`. A finer row in doubt takes what it may
+// hold: coverage is an estimate, and whether the voxel is occupied at all has been decided exactly. Of an
+// alpha-masked triangle count the finer voxels under whose centres it is not cut away.
 uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v) {
     uvec2 mask = uvec2(0u);
     for (int i = 0; i < 16; ++i) {
@@ -140,7 +141,7 @@ void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
 }
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    const uint i = thread_index();
     if (i >= pair_count) return;
     const uint triangle = pairs[i].triangle;
     const uint tile_index = pairs[i].tile_mip & 0xFFFFu;
@@ -148,22 +149,22 @@ void main() {
     const ivec2 first_row = ivec2(pairs[i].rows & 0xFFu, pairs[i].rows >> 16 & 0xFFu);
     const ivec2 row_count = ivec2(pairs[i].rows >> 8 & 0xFFu, pairs[i].rows >> 24);
     const BrickTile tile = tiles[tile_index];
-    const int size = tile.low_size.w + mip;  // mips are of powers of two alone
+    const int size = tile.size + mip;  // mips are of powers of two alone
 
-    const uvec4 corners = surface_triangles[triangle].vertices_material;
+    const uvec3 corners = surface_triangles[triangle].vertices;
     const ivec3 a = surface_position(corners.x);
     const ivec3 b = surface_position(corners.y);
     const ivec3 c = surface_position(corners.z);
     const ExactTriangle coarse = exact_triangle(a, b, c, size);
     const ExactTriangle fine = exact_triangle(a, b, c, FINER(size));
-    const Patch s = make_patch(corners.xyz, surface_materials[corners.w], a, b, c);
+    const Patch s = make_patch(corners, surface_materials[surface_triangles[triangle].material], a, b, c);
 
-    const ivec3 region_low = (tile.low_size.xyz >> mip) - 1;
+    const ivec3 region_low = (tile.low >> mip) - 1;
     const ivec3 low = max(coarse.low, region_low + ivec3(0, first_row));
     const ivec3 high = min(coarse.high, region_low + ivec3(MIP_SIDE(mip) - 1, first_row + row_count - 1));
     if (any(greaterThan(low, high))) return;
-    // One loop over rows and voxels alike: threads that run side by side wait for the longest, not for the product of
-    // the longest of each nested loop.
+    // One loop over rows and voxels alike: threads that run side by side wait for the longest, not for the
+    // product of the longest of each nested loop.
     ivec3 v = ivec3(0, low.y - 1, low.z);
     int last = -1;
     for (;;) {

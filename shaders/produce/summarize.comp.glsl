@@ -1,14 +1,11 @@
-// One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With TELL_EMPTY,
-// where the oracle is not exact, it also tells whether there is anything in the tile at all.
-// defines: BRICK_M=16 BRICK_MIPS=2 HAS_COLOR=1 HAS_MASK=1 TELL_EMPTY=1
-// defines: BRICK_M=16 HAS_COLOR=1 HAS_MASK=0 TELL_EMPTY=0
-// defines: BRICK_M=8 BRICK_MIPS=1 HAS_COLOR=0 HAS_MASK=0 TELL_EMPTY=0
-// defines: BRICK_M=8 BRICK_MIPS=3 HAS_COLOR=0 HAS_MASK=0 TELL_EMPTY=0
-// defines: BRICK_M=81 HAS_COLOR=0 HAS_MASK=0 TELL_EMPTY=1
+// One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With
+// TELL_EMPTY, where the oracle is not exact, it also tells whether there is anything in the tile at all.
+#include "interop/produce.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
 
-layout(local_size_x = 64) in;
+#define GROUP_SIZE 64
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
 
@@ -43,11 +40,11 @@ bool is_full(uint first, uint block) {
 }
 
 void main() {
-    const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    const uint i = thread_index();
     if (i >= tile_count * uint(SUMMARY_WORDS)) return;
-    const uint slot = uint(tiles[i / uint(SUMMARY_WORDS)].slot.x);
+    const uint slot = uint(tiles[i / uint(SUMMARY_WORDS)].slot);
     const uint word = i % uint(SUMMARY_WORDS);
-    const uint first = slot * uint(MASK_WORDS_A_SLOT);
+    const uint first = slot * uint(MASK_WORDS);
     uvec2 summary = uvec2(0u);
     for (uint bit = 0u; bit < 64u && word * 64u + bit < uint(BLOCKS); ++bit) {
         const uint full = is_full(first, word * 64u + bit) ? 1u : 0u;

@@ -1,6 +1,6 @@
-// The two unit normals that stand for all those in a voxel: they have the same mean, and lie on the line through it along
-// which the normals spread most (the first principal component). So the two faces at an edge, or the two sides of something
-// thin, are told apart, where their mean faces neither way.
+// The two unit normals that stand for all those in a voxel: they have the same mean, and lie on the line
+// through it along which the normals spread most (the first principal component). So the two faces at an
+// edge, or the two sides of something thin, are told apart, where their mean faces neither way.
 #include "pool/brick_normals.glsl"
 
 // Normals that spread less (cosine of half the angle between the two is about 0.993) are one.

@@ -1,5 +1,5 @@
 // What a batch of micro-patches hides, added to the batches before (Atty et al. 2005, appendix A).
-#include "interop/bindings.h"
+#include "interop/shadow_map.h"
 
 layout(binding = TEXTURE_SHADOW_HIDDEN) uniform sampler2D batch;
 layout(location = 0) out float hidden;

@@ -1,16 +1,16 @@
-// The xy-reduced pyramid of Forest et al. 2009, section 2.3: level l has (side / 2^l)^2 columns, each with all its bits. A
-// column runs along x, as the words of a BitGrid do: their z is our x, and their x and y are our y and z.
+// The xy-reduced pyramid of Forest et al. 2009, section 2.3: level l has (side / 2^l)^2 columns, each with
+// all its bits. A column runs along x, as the words of a BitGrid do: their z is our x, and their x and y are
+// our y and z.
 // Needs the define COLUMN_LEVELS: log2 of the side.
-#include "interop/config.h"
-#include "interop/bindings.h"
+#include "interop/columns.h"
 
 #define COLUMN_SIDE (1 << COLUMN_LEVELS)
 #define COLUMN_TEXELS ((COLUMN_SIDE + COLUMN_TEXEL_BITS - 1) / COLUMN_TEXEL_BITS)  // of a column
 
 layout(binding = TEXTURE_COLUMNS) uniform usamplerBuffer columns;
 
-// First texel of the column at (y, z) of a level. The levels before it have 4^COLUMN_LEVELS + ... columns: a sum of powers of
-// 4 is a third of a difference of two, which has every other bit.
+// First texel of the column at (y, z) of a level. The levels before it have 4^COLUMN_LEVELS + ... columns: a
+// sum of powers of 4 is a third of a difference of two, which has every other bit.
 int column_at(int level, ivec2 place) {
     const int below = (1 << (2 * COLUMN_LEVELS)) - (1 << (2 * (COLUMN_LEVELS - level)));
     return (4 * (below & 0x55555555) + (place.y << (COLUMN_LEVELS - level)) + place.x) * COLUMN_TEXELS;

@@ -1,6 +1,6 @@
-// Projects the soft shadow map onto the scene: a receiver's point takes the light that the map says it sees. What lies
-// outside the map's window, or behind the light, is lit.
-#include "interop/bindings.h"
+// Projects the soft shadow map onto the scene: a receiver's point takes the light that the map says it sees.
+// What lies outside the map's window, or behind the light, is lit.
+#include "interop/shadow_map.h"
 #include "shadow/material.glsl"
 #include "shadow/window.glsl"
 

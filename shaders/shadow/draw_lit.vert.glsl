@@ -1,5 +1,5 @@
 // The scene as a camera sees it, with where its points lie for the light.
-#include "interop/bindings.h"
+#include "interop/shadow_map.h"
 
 layout(location = ATTRIBUTE_SHADOW_POSITION) in vec3 position;
 layout(location = ATTRIBUTE_SHADOW_NORMAL) in vec3 normal;

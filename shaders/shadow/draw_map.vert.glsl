@@ -1,5 +1,5 @@
 // Occluders or receivers as the centre of the light sees them.
-#include "interop/bindings.h"
+#include "interop/shadow_map.h"
 
 layout(location = ATTRIBUTE_SHADOW_POSITION) in vec3 position;
 layout(location = ATTRIBUTE_SHADOW_COLOR) in vec4 color;

@@ -1,8 +1,7 @@
-// The soft shadow map: what is left of the light. With two passes, the one that hides more counts (Atty et al. 2005,
-// section 3.5). Reprojections that overlap may sum to more than the whole light. One thread a texel.
-// defines: SHADOW_PASSES=1
-// defines: SHADOW_PASSES=2
-#include "interop/bindings.h"
+// The soft shadow map: what is left of the light. With two passes, the one that hides more counts (Atty et
+// al. 2005, section 3.5). Reprojections that overlap may sum to more than the whole light. One thread a
+// texel.
+#include "interop/shadow_map.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = TEXTURE_SHADOW_HIDDEN) uniform sampler2D hidden_by_closest;

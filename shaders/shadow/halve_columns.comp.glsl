@@ -1,17 +1,18 @@
-// One thread is one texel of a coarser level of the pyramid: the OR of those of its 2 x 2 finer columns (Forest et al.
-// 2009, section 2.3, Figure 4(a)). Columns keep all their bits.
-// defines: COLUMN_LEVELS=9
-// defines: COLUMN_LEVELS=3
+// One thread is one texel of a coarser level of the pyramid: the OR of those of its 2 x 2 finer columns
+// (Forest et al. 2009, section 2.3, Figure 4(a)). Columns keep all their bits.
+#include "interop/columns.h"
 #include "shadow/columns.glsl"
 
-layout(local_size_x = 64) in;
+#define GROUP_SIZE 64
+#include "common/thread.glsl"
 
-layout(std430, binding = SSBO_COLUMNS) restrict writeonly buffer Coarse { uvec4 coarse[]; };  // from level 1 on
+// From level 1 on.
+layout(std430, binding = SSBO_COLUMNS) restrict writeonly buffer Coarse { uvec4 coarse[]; };
 
 uniform int level;  // that is built
 
 void main() {
-    const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x);
+    const int thread = int(thread_index());
     const int side = COLUMN_SIDE >> level;
     if (thread >= side * side * COLUMN_TEXELS) return;
     const int texel = thread % COLUMN_TEXELS;

@@ -1,5 +1,6 @@
-// The penumbra extents, as quads on the soft shadow map: one instance a micro-patch, four vertices of a strip.
-#include "interop/bindings.h"
+// The penumbra extents, as quads on the soft shadow map: one instance a micro-patch, four vertices of a
+// strip.
+#include "interop/shadow_map.h"
 #include "shadow/window.glsl"
 
 layout(location = ATTRIBUTE_SHADOW_PATCH) in uvec4 patch_words;  // MicroPatch

@@ -1,12 +1,8 @@
-// Micro-patches (Atty et al. 2005, sections 3.2 and 3.3): each texel of the occluder map that holds an occluder becomes one,
-// with the penumbra extent on the receiver map that it may darken. One thread a row of the map. The first pass counts, the
-// second writes, so that the list is in the order of the texels, whatever order the threads run in: sums of floats depend
-// on theirs.
-// defines: LIST_WRITES=0
-// defines: LIST_WRITES=1
-#include "interop/bindings.h"
-#include "interop/config.h"
-#include "interop/types.h"
+// Micro-patches (Atty et al. 2005, sections 3.2 and 3.3): each texel of the occluder map that holds an
+// occluder becomes one, with the penumbra extent on the receiver map that it may darken. One thread a row of
+// the map. The first pass counts, the second writes, so that the list is in the order of the texels, whatever
+// order the threads run in: sums of floats depend on theirs.
+#include "interop/shadow_map.h"
 #include "shadow/window.glsl"
 
 layout(local_size_x = SHADOW_LIST_GROUP) in;
@@ -23,8 +19,8 @@ bool is_occluder(float w) {
     return w > 0.0 && w < SHADOW_NONE;
 }
 
-// Texels of the receiver map, first and past the last, where a receiver no further than inverse depth `furthest` could see
-// the patch before the light.
+// Texels of the receiver map, first and past the last, where a receiver no further than inverse depth
+// `furthest` could see the patch before the light.
 ivec4 texels_before(vec4 edges, float w, float furthest) {
     if (w <= furthest) return ivec4(0);
     const vec2 reach = light_half * (w - furthest);
@@ -50,8 +46,8 @@ float furthest_in(ivec4 extent) {
                    texelFetch(furthest_receivers, ivec2(high.x, low.y), level).x));
 }
 
-// Atty et al. take one depth for the virtual plane of the map. The furthest receiver's is the one that leaves nothing out;
-// the furthest within that extent leaves nothing out either, and is often much nearer.
+// Atty et al. take one depth for the virtual plane of the map. The furthest receiver's is the one that leaves
+// nothing out; the furthest within that extent leaves nothing out either, and is often much nearer.
 ivec4 penumbra_extent(vec4 edges, float w) {
     const int top = textureQueryLevels(furthest_receivers) - 1;
     ivec4 extent = texels_before(edges, w, texelFetch(furthest_receivers, ivec2(0), top).x);

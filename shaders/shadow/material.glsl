@@ -1,5 +1,5 @@
 // The base colour of what is drawn. Its texture is white where a material has none.
-#include "interop/bindings.h"
+#include "interop/shadow_map.h"
 
 layout(binding = TEXTURE_SHADOW_BASE_COLOR) uniform sampler2D base_color_texture;
 uniform vec4 base_color;

@@ -1,10 +1,7 @@
-// The pyramid of the furthest receivers: a texel of a level holds the least inverse depth of its four of the finer level.
-// The base is the receiver map itself, on a square whose side is a power of two; what has no receiver is SHADOW_NONE.
-// One thread a texel.
-// defines: REDUCE_BASE=1
-// defines: REDUCE_BASE=0
-#include "interop/bindings.h"
-#include "interop/config.h"
+// The pyramid of the furthest receivers: a texel of a level holds the least inverse depth of its four of the
+// finer level. The base is the receiver map itself, on a square whose side is a power of two; what has no
+// receiver is SHADOW_NONE. One thread a texel.
+#include "interop/shadow_map.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 #if REDUCE_BASE

@@ -1,28 +1,31 @@
-// A ray through the xy-reduced pyramid (Forest et al. 2009, section 3.1.1, after Revelles et al. 2000). The includer supplies
-// visit_voxel().
+// A ray through the xy-reduced pyramid (Forest et al. 2009, section 3.1.1, after Revelles et al. 2000). The
+// includer supplies visit_voxel().
 //
-// A column of some level is empty for a ray when none of its bits is set between the voxels where the ray enters and leaves
-// it (their adaptive mask, Figure 10(b)): then the ray steps over it, and goes on with the largest column that begins there.
-// Otherwise it goes down a level, and in a column of voxels the bits that are set are the voxels that it meets. With
-// COLUMN_MASK_MIP_LEVEL a node is a cube, as in Figure 10(a).
+// A column of some level is empty for a ray when none of its bits is set between the voxels where the ray
+// enters and leaves it (their adaptive mask, Figure 10(b)): then the ray steps over it, and goes on with the
+// largest column that begins there. Otherwise it goes down a level, and in a column of voxels the bits that
+// are set are the voxels that it meets. With COLUMN_MASK_MIP_LEVEL a node is a cube, as in Figure 10(a).
 //
-// Which voxels a ray crosses, and in which order, is told by the times at which it crosses their planes, as floats; of equal
-// ones x comes first, then y, then z. So it does not depend on the columns by which it is found, and every step moves one
-// coordinate by at least one.
+// Which voxels a ray crosses, and in which order, is told by the times at which it crosses their planes, as
+// floats; of equal ones x comes first, then y, then z. So it does not depend on the columns by which it is
+// found, and every step moves one coordinate by at least one.
 //
 // Needs the defines COLUMN_LEVELS and COLUMN_MASK.
+#include "interop/columns.h"
 
-// Where a ray begins: on a surface, where larger columns are not empty. From the root on, as Forest et al. begin, the same
-// voxels are found later.
+// Where a ray begins: on a surface, where larger columns are not empty. From the root on, as Forest et al.
+// begin, the same voxels are found later.
 #define COLUMN_START_LEVEL 2
-#define TREE_N 2
-#define BRICK_M 8
-#define MAX_LEVEL (COLUMN_LEVELS - 3)
 #include "shadow/columns.glsl"
-#include "march/tree_cells.glsl"
+
+#define CELL_BASE 2
+#define WINDOWS 0
+#define MARCHED_SIDE COLUMN_SIDE
+#include "march/cells.glsl"
 #include "march/ray.glsl"
 
-// An occupied voxel that the ray crosses, and the distance of the middle of its way through it; false stops the ray.
+// An occupied voxel that the ray crosses, and the distance of the middle of its way through it; false stops
+// the ray.
 bool visit_voxel(ivec3 voxel, float t);
 
 // When the ray crosses these planes, one an axis; never those of an inert axis.
@@ -31,8 +34,8 @@ vec3 crossing_times(Ray ray, ivec3 planes) {
     return mix(t, vec3(1e30), ray.inert);
 }
 
-// The voxel where the ray is once it has crossed all planes before time t, and of those at t the axes in `tied`. It lies
-// between ray.voxel and `last`.
+// The voxel where the ray is once it has crossed all planes before time t, and of those at t the axes in
+// `tied`. It lies between ray.voxel and `last`.
 ivec3 voxel_at(Ray ray, float t, bvec3 tied, ivec3 last) {
     const ivec3 low = min(ray.voxel, last);
     const ivec3 high = max(ray.voxel, last);
@@ -64,13 +67,15 @@ Crossed cross_node(Ray ray, int level) {
 #endif
     const ivec3 low = (ray.voxel >> shift) << shift;
     const ivec3 high = low + (ivec3(1) << shift) - 1;
-    const ivec3 corner = mix(low, high, equal(ray.positive, ivec3(1)));  // where it leaves by all axes at once
+    // Where it leaves by all axes at once.
+    const ivec3 corner = mix(low, high, equal(ray.positive, ivec3(1)));
     const vec3 t = crossing_times(ray, corner + ray.positive);
     Crossed way;
     const float t_plane = min(t.x, min(t.y, t.z));
     way.t_exit = max(t_plane, ray.t);
     way.exit_axis = t.x == t_plane ? 0 : t.y == t_plane ? 1 : 2;
-    // Planes that it crosses at the same time as the one by which it leaves: those of the axes before that one.
+    // Planes that it crosses at the same time as the one by which it leaves: those of the axes before that
+    // one.
     const bool ends = way.t_exit >= ray.t_end;
     const bvec3 tied = bvec3(!ends, !ends && way.exit_axis > 1, false);
     way.last = voxel_at(ray, min(way.t_exit, ray.t_end), tied, corner);
@@ -89,8 +94,8 @@ Crossed cross_node(Ray ray, int level) {
     return way;
 }
 
-// Brings the ray to the voxel behind the node, and tells the level of the largest node that begins there. False when it has
-// left the grid or come to its end.
+// Brings the ray to the voxel behind the node, and tells the level of the largest node that begins there.
+// False when it has left the grid or come to its end.
 bool leave_node(inout Ray ray, Crossed way, out int level) {
     const ivec3 before = ray.voxel;
     ray.voxel = way.last;
@@ -110,8 +115,8 @@ bool leave_node(inout Ray ray, Crossed way, out int level) {
     return true;
 }
 
-// Takes the voxel at x = `x` of the column of voxels that the ray is in, and brings the ray behind it within the column.
-// `goes_on`: visit_voxel() wants more. False when it was the column's last on the ray's way.
+// Takes the voxel at x = `x` of the column of voxels that the ray is in, and brings the ray behind it within
+// the column. `goes_on`: visit_voxel() wants more. False when it was the column's last on the ray's way.
 bool take_voxel(inout Ray ray, Crossed way, int x, out bool goes_on) {
     const vec3 t_in = crossing_times(ray, ivec3(x + 1 - ray.positive.x));
     const vec3 t_out = crossing_times(ray, ivec3(x + ray.positive.x));
@@ -125,7 +130,8 @@ bool take_voxel(inout Ray ray, Crossed way, int x, out bool goes_on) {
     return true;
 }
 
-// From ray.t on; true when visit_voxel() has stopped the ray. `turns` counts what a thread has done in this pass.
+// From ray.t on; true when visit_voxel() has stopped the ray. `turns` counts what a thread has done in this
+// pass.
 bool trace_columns(inout Ray ray, inout int turns) {
     if (!enter_root(ray)) return false;
     // Onto the side of each plane that the ray is on at this time.

@@ -1,5 +1,5 @@
-// Whether the part of a masked triangle inside a closed voxel touches a closed texel square that passes the cutoff:
-// exact on every driver. The definition in few lines is voxelizer/exact_mask.h.
+// Whether the part of a masked triangle inside a closed voxel touches a closed texel square that passes the
+// cutoff: exact on every driver. The definition in few lines is voxelizer/exact_mask.h.
 //
 //     int mask_decide(MaskedTriangle m, ivec3 voxel, int shift)     MASK_SURFACE, MASK_EMPTY, or MASK_UNDECIDED: of what
 //                                                                   is left to voxelizer/surface/exact_mask.h
@@ -8,15 +8,18 @@
 //
 // The voxel has side 2^shift, is numbered in the root cube, and meets the triangle.
 //
-// A point of the triangle is its three weights. Sides of the voxel, of a texel, and of the triangle are lines that are
-// linear and homogeneous in the weights, with whole coefficients under 2^25.6. The part inside the voxel is a polygon
-// whose corners are each the cross product of two such lines: whole numbers, and exact, because the voxel's and the
-// texel's sides are used only where they cut the triangle: then a component of the product is twice an area that lies in
-// the bounding box, at most 9 * 2^48. The side of a corner is a sum of three products of 77 bits: the corner is cut in
-// two halves, each sum is exact in double, and the two are compared.
-// Clipping: Sutherland and Hodgman 1974, closed: what only touches is left as a segment or a point.
+// A point of the triangle is its three weights. Sides of the voxel, of a texel, and of the triangle are lines
+// that are linear and homogeneous in the weights, with whole coefficients under 2^25.6. The part inside the
+// voxel is a polygon whose corners are each the cross product of two such lines: whole numbers, and exact,
+// because the voxel's and the texel's sides are used only where they cut the triangle: then a component of
+// the product is twice an area that lies in the bounding box, at most 9 * 2^48. The side of a corner is a sum
+// of three products of 77 bits: the corner is cut in two halves, each sum is exact in double, and the two are
+// compared. Clipping: Sutherland and Hodgman 1974, closed: what only touches is left as a segment or a point.
 //
-// Drivers inline every call, so each step is written once, inside loops, and what it works on is private memory.
+// Drivers inline every call, so each step is written once, inside loops, and what it works on is private
+// memory.
+#include "interop/surface.h"
+#include "interop/voxelize.h"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_attributes.glsl"
 
@@ -32,18 +35,19 @@ struct MaskedTriangle {
 };
 
 MaskedTriangle masked_triangle(uint triangle) {
-    const uvec4 corners = surface_triangles[triangle].vertices_material;
+    const uvec3 corners = surface_triangles[triangle].vertices;
     MaskedTriangle m;
     const ivec3 a = surface_position(corners.x), b = surface_position(corners.y), c = surface_position(corners.z);
     m.x = ivec3(a.x, b.x, c.x);
     m.y = ivec3(a.y, b.y, c.y);
     m.z = ivec3(a.z, b.z, c.z);
-    m.material = surface_materials[corners.w];
+    m.material = surface_materials[surface_triangles[triangle].material];
     m.alpha = ivec3(attributes[corners.x].color >> 24, attributes[corners.y].color >> 24,
                     attributes[corners.z].color >> 24);
     const vec2 ta = attributes[corners.x].texcoord, tb = attributes[corners.y].texcoord,
                tc = attributes[corners.z].texcoord;
-    // Coordinates are multiples of 1 / TEXCOORD_UNITS, so that differences are exact, and one rounding is left.
+    // Coordinates are multiples of 1 / TEXCOORD_UNITS, so that differences are exact, and one rounding is
+    // left.
     const vec2 period = floor(min(min(ta, tb), tc));
     m.period = ivec2(period);
     const dvec2 size = dvec2(max(uvec2(m.material.width, m.material.height), 1u));
@@ -65,7 +69,8 @@ MaskedTriangle masked_triangle(uint triangle) {
 #define MASK_LINE_COUNT 11
 ivec3 mask_lines[MASK_LINE_COUNT];
 
-// Three polygons, each a list of corners: the two lines that cross there (4 bits each) and the line from there on.
+// Three polygons, each a list of corners: the two lines that cross there (4 bits each) and the line from
+// there on.
 #define MASK_MAX_CORNERS 11  // three, and one more for each line that cuts
 uint mask_corners[3 * MASK_MAX_CORNERS];
 
@@ -125,8 +130,8 @@ ivec2 mask_texel_at(dvec3 corner, ivec3 coordinate, int texel_side) {
     return ivec2(side < 0 ? nearest - 1 : nearest, side > 0 ? nearest + 1 : nearest);
 }
 
-// The texels of the image that a range of texels of the plane falls on along one axis (MATERIAL_WRAP_*): one piece or
-// two; an empty piece has its end before its start.
+// The texels of the image that a range of texels of the plane falls on along one axis (MATERIAL_WRAP_*): one
+// piece or two; an empty piece has its end before its start.
 void mask_pieces(ivec2 range, int period, int size, uint mode, out ivec2 pieces[2]) {
     pieces[1] = ivec2(0, -1);
     if (mode == 2u) {
@@ -211,9 +216,10 @@ MaskRange mask_range(MaskedTriangle m, MaskPolygon polygon) {
     return range;
 }
 
-// MASK_EMPTY, MASK_SURFACE or MASK_UNDECIDED. First the whole part of the triangle inside the voxel is held against the
-// rectangle of texels around it. While some pass there and some do not, it is cut in strips of 2^level rows, of which
-// those without a texel that passes are skipped; in one row or column a convex part touches all from first to last.
+// MASK_EMPTY, MASK_SURFACE or MASK_UNDECIDED. First the whole part of the triangle inside the voxel is held
+// against the rectangle of texels around it. While some pass there and some do not, it is cut in strips of
+// 2^level rows, of which those without a texel that passes are skipped; in one row or column a convex part
+// touches all from first to last.
 int mask_decide(MaskedTriangle m, ivec3 voxel, int shift) {
     if (m.material.width == 0u || m.alpha != ivec3(255)) return MASK_UNDECIDED;
     mask_begin(m, voxel, shift);

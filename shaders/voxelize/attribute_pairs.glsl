@@ -1,9 +1,9 @@
 // Which triangle touches which occupied voxel.
-#include "interop/bindings.h"
-#include "interop/config.h"
+#include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_ATTRIBUTE_PAIRS) restrict buffer AttributePairs {
     uint pair_count;  // past ATTRIBUTE_PAIRS some found no room
     uint pair_padding[3];
-    uvec4 pairs[];    // x: voxel x | y << 16; y: voxel z, in the region; z: place of the voxel's sums; w: triangle
+    // x: voxel x | y << 16; y: voxel z, in the region; z: place of the voxel's sums; w: triangle.
+    uvec4 pairs[];
 };

@@ -1,7 +1,6 @@
-// What an occupied voxel gathers: sums of whole numbers in 64 bits, so that the order of threads does not show. Two words
-// each, low word first; negative ones in two's complement.
-#include "interop/bindings.h"
-#include "interop/config.h"
+// What an occupied voxel gathers: sums of whole numbers in 64 bits, so that the order of threads does not
+// show. Two words each, low word first; negative ones in two's complement.
+#include "interop/voxelize.h"
 
 #define SUM_WEIGHT 0  // area, 1 = a face of the voxel
 #define SUM_COLOR 2

@@ -1,5 +1,5 @@
 // The region whose voxels are marked: one bit each, as in voxelizer/bit_grid.h.
-#include "interop/bindings.h"
+#include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_VOXEL_BITS) restrict buffer VoxelBits { uint voxel_bits[]; };
 

@@ -1,6 +1,5 @@
 // Voxels that a masked triangle meets, and whose texels are still to be looked at.
-#include "interop/bindings.h"
-#include "interop/config.h"
+#include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_VOXEL_CANDIDATES) restrict buffer VoxelCandidateBlock {
     uint candidate_count;  // past VOXEL_CANDIDATES some found no room

@@ -1,14 +1,16 @@
 // A thread is one candidate: it marks the voxel if the mask leaves surface there.
+#include "interop/voxelize.h"
 #include "voxelize/alpha_mask.glsl"
 #include "voxelize/bits.glsl"
 #include "voxelize/candidates.glsl"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 uniform int voxel_shift;
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint thread = thread_index();
     if (thread >= candidate_count) return;
     const ivec4 candidate = candidates[thread];
     if (is_marked(candidate.xyz)) return;

@@ -1,14 +1,14 @@
-// One thread is one vertex of a surface that moves: morph targets, skin, the node's place, and the lattice, as
-// scenes/deform.cpp, scenes/transform.h and Grid::lattice_from_world do, operation by operation, so that positions have the
-// same bits. `precise` keeps the driver from fusing and from changing the order. Sums and products of doubles are the only
-// ones in need: drivers round those alike. Normals take quotients and roots too, and may differ in the last step.
-// defines: NORMALS=0
-// defines: NORMALS=1
-#include "interop/bindings.h"
-#include "interop/config.h"
-#include "interop/types.h"
+// One thread is one vertex of a surface that moves: morph targets, skin, the node's place, and the lattice,
+// as scenes/deform.cpp, scenes/transform.h and Grid::lattice_from_world do, operation by operation, so that
+// positions have the same bits. `precise` keeps the driver from fusing and from changing the order. Sums and
+// products of doubles are the only ones in need: drivers round those alike. Normals take quotients and roots
+// too, and may differ in the last step.
+#include "interop/deform.h"
+#include "interop/grid.h"
+#include "interop/surface.h"
 
-layout(local_size_x = DEFORM_GROUP) in;
+#define GROUP_SIZE DEFORM_GROUP
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_SURFACE_POSITIONS) restrict writeonly buffer PositionBlock { int positions[]; };
 #if NORMALS
@@ -83,8 +83,8 @@ vec3 morphed_position(DeformItem item, uint vertex, vec3 rest) {
     return position;
 }
 
-// Positions that their buffer cannot hold are moved to just past what it can: a triangle of such vertices still misses the
-// root cube on the same side, and find_far.comp.glsl sees which do not miss it.
+// Positions that their buffer cannot hold are moved to just past what it can: a triangle of such vertices
+// still misses the root cube on the same side, and find_far.comp.glsl sees which do not miss it.
 ivec3 lattice_position(dvec3 world) {
     const dvec3 origin = dvec3(header.origin[0], header.origin[1], header.origin[2]);
     precise dvec3 units = (world - origin) * header.scale;
@@ -149,7 +149,7 @@ uint packed_normal(dvec3 normal) {
 #endif
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * DEFORM_GROUP;
+    const uint thread = thread_index();
     if (thread >= count) return;
     const uvec4 at_rest = vertices[thread];
     const DeformItem item = items[at_rest.w];

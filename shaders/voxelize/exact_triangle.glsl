@@ -13,33 +13,30 @@
 //         its two tiers, for hot loops: where lanes run in lockstep a driver may compute the second for all of them, so
 //         that rows in doubt are better gathered and decided apart (mark_large)
 //
-// Voxels are numbered in the whole root cube: voxel i spans [i, i + 1] * 2^shift. Boxes and triangles are closed:
-// contact counts. Segments and points are triangles too.
+// Voxels are numbered in the whole root cube: voxel i spans [i, i + 1] * 2^shift. Boxes and triangles are
+// closed: contact counts. Segments and points are triangles too.
 //
-// With the define ANY_VOXEL_SIDE, `shift` is instead the voxel's side in lattice units: even, at most 2^24 (trees whose N
-// is no power of two). Not for the functions that step through rows.
+// Needs the define ANY_VOXEL_SIDE. Where it is 1, `shift` is instead the voxel's side in lattice units: even,
+// at most 2^24 (trees whose N is no power of two). Not for the functions that step through rows.
 //
-// Separating axes: Akenine-Möller 2001. Each axis that has an x bounds x from one side by a linear function of the row,
-// the others accept or reject the row (Schwarz and Seidel 2010, section 3). A projection of no area is replaced by its
-// longest side, there and back, so that both sides of its axis are tested.
+// Separating axes: Akenine-Möller 2001. Each axis that has an x bounds x from one side by a linear function
+// of the row, the others accept or reject the row (Schwarz and Seidel 2010, section 3). A projection of no
+// area is replaced by its longest side, there and back, so that both sides of its axis are tested.
 //
-// Two tiers. The filter works in float, from the corner t.low, in units in which vertices and planes are exact: voxels
-// (lattice units with ANY_VOXEL_SIDE: all planes within the box are even numbers under 2^25). u = 2^-24 is the unit of
-// rounding. Every bound is known to +-error, and where the whole voxels within that error differ, the row is in
-// doubt. Then the exact tier decides in double: each product and sum below is a whole number of at most 2^53 and thus
-// exact, fused or not. Edges are under 2^25.6, distances under 2^26, and a component of the normal is at most 9 * 2^48,
-// because twice the area of a triangle is at most that of its bounding box.
+// Two tiers. The filter works in float, from the corner t.low, in units in which vertices and planes are
+// exact: voxels (lattice units with ANY_VOXEL_SIDE: all planes within the box are even numbers under 2^25). u
+// = 2^-24 is the unit of rounding. Every bound is known to +-error, and where the whole voxels within that
+// error differ, the row is in doubt. Then the exact tier decides in double: each product and sum below is a
+// whole number of at most 2^53 and thus exact, fused or not. Edges are under 2^25.6, distances under 2^26,
+// and a component of the normal is at most 9 * 2^48, because twice the area of a triangle is at most that of
+// its bounding box.
 
 const float FAR_AWAY = 1.0e30;
 const float SIDE_ERROR = 1.9073486328125e-6;    // 2^-19
 const double SPLIT = 67108864.0LF;              // 2^26
 
-#ifndef ANY_VOXEL_SIDE
-#define ANY_VOXEL_SIDE 0
-#endif
-
-// The three sides of a projection with an x, as bounds of x: at rows [r, r + 1] the bound nearest to the triangle's
-// outside is x - slope * (r - row).
+// The three sides of a projection with an x, as bounds of x: at rows [r, r + 1] the bound nearest to the
+// triangle's outside is x - slope * (r - row).
 struct SideBounds {
     vec3 x, row, slope;
     bvec3 is_lower, is_upper;  // neither: parallel to x, where the bounding box says as much
@@ -56,7 +53,8 @@ struct ExactTriangle {
     dvec3 normal;       // (b - a) x (c - a)
 
     bool filtered;      // no: it is too wide for floats, and every row is in doubt
-    vec3 side_y, side_z, side_offset;  // side * (y, z, 1) >= 0 where a row meets the inside of a side, +-SIDE_ERROR
+    // Side * (y, z, 1) >= 0 where a row meets the inside of a side, +-SIDE_ERROR.
+    vec3 side_y, side_z, side_offset;
     SideBounds xy, xz;
     float side_bounds_error;
     vec3 plane;         // lowest x of the plane over a row: plane * (y, z, 1)
@@ -97,8 +95,8 @@ vec2 in_voxels(ExactTriangle t, vec2 x) { return x; }
 #define PLANE_ERROR (0.5 * SIDE_ERROR)
 #endif
 
-// Orders a projected triangle counter-clockwise: (-edge.y, edge.x) then points inwards. Of one without area, the
-// longest side there and back is left.
+// Orders a projected triangle counter-clockwise: (-edge.y, edge.x) then points inwards. Of one without area,
+// the longest side there and back is left.
 void wind(inout ivec2 a, inout ivec2 b, inout ivec2 c, double twice_area) {
     if (twice_area > 0.0LF) return;
     if (twice_area < 0.0LF) {
@@ -116,9 +114,11 @@ void wind(inout ivec2 a, inout ivec2 b, inout ivec2 c, double twice_area) {
     c = a;
 }
 
-// ---- The filter ----------------------------------------------------------------------------------------------------
+// ---- The filter
+// ----------------------------------------------------------------------------------------------------
 
-// Sides of a projection, counter-clockwise: edges a to b, b to c, c to a; one component of all three at a time.
+// Sides of a projection, counter-clockwise: edges a to b, b to c, c to a; one component of all three at a
+// time.
 SideBounds side_bounds(vec3 x, vec3 row, vec3 next_x, vec3 next_row, float voxel) {
     SideBounds s;
     const vec3 inward_x = row - next_row;
@@ -135,8 +135,8 @@ SideBounds side_bounds(vec3 x, vec3 row, vec3 next_x, vec3 next_row, float voxel
 void prepare_sides(inout ExactTriangle t, vec3 y, vec3 z, vec3 next_y, vec3 next_z, vec2 size) {
     t.side_y = z - next_z;
     t.side_z = next_y - y;
-    // Scaled, so that one error serves all. Each of the terms, and their partial sums, are within +-2 after scaling,
-    // and at most ten roundings meet: 20 u < SIDE_ERROR.
+    // Scaled, so that one error serves all. Each of the terms, and their partial sums, are within +-2 after
+    // scaling, and at most ten roundings meet: 20 u < SIDE_ERROR.
     const vec3 reach = abs(t.side_y) * size.x + abs(t.side_z) * size.y;
     const bvec3 empty = equal(reach, vec3(0.0));
     const vec3 scale = 1.0 / mix(reach, vec3(1.0), empty);
@@ -180,8 +180,8 @@ void prepare_filter(inout ExactTriangle t) {
     wind(a, b, c, -t.normal.y);
     u = vec3(a.x, b.x, c.x) * unit, v = vec3(a.y, b.y, c.y) * unit;
     t.xz = side_bounds(u, v, u.yzx, v.yzx, voxel);
-    // A bound within three sizes of the box is a vertex's x, plus a product of at most four sizes that has met eight
-    // roundings: 35 u; from units to voxels, 15 u more. What is further out stays out.
+    // A bound within three sizes of the box is a vertex's x, plus a product of at most four sizes that has
+    // met eight roundings: 35 u; from units to voxels, 15 u more. What is further out stays out.
     t.side_bounds_error = 2.0 * SIDE_ERROR * size.x;
 
     prepare_plane(t, vec3(t.a - corner) * unit, size + voxel);
@@ -207,7 +207,8 @@ RowSlice row_slice(ExactTriangle t, int z) {
 }
 
 #if !ANY_VOXEL_SIDE
-// Whole r, first and last, that may have slope * r + rest >= -SIDE_ERROR for all three sides; of `filtered` triangles.
+// Whole r, first and last, that may have slope * r + rest >= -SIDE_ERROR for all three sides; of `filtered`
+// triangles.
 vec2 rows_inside_sides(vec3 slope, vec3 rest) {
     // As much again, and more, for the roundings here.
     const vec3 bound = -(rest + 2.0 * SIDE_ERROR) / mix(slope, vec3(1.0), equal(slope, vec3(0.0)));
@@ -254,7 +255,8 @@ ivec2 filtered_row_span(ExactTriangle t, ivec2 row, out bool in_doubt) {
     return filtered_row_span(t, row_slice(t, row.y), row.x, in_doubt);
 }
 
-// ---- The exact tier ------------------------------------------------------------------------------------------------
+// ---- The exact tier
+// ------------------------------------------------------------------------------------------------
 
 // Whether the row meets the inner side of the edge from p to q, both (y, z).
 bool meets_side(ivec2 p, ivec2 q, ivec2 row_low, int voxel_side) {
@@ -287,7 +289,8 @@ void narrow_by_plane(inout ivec2 span, ExactTriangle t, ivec2 row_low) {
     const dvec3 low = normal - high * SPLIT;
     const int side = side_of(t);
     for (int end = 0; end < 2; ++end) {
-        // Lower end: the voxels whose upper corner is not under the plane; upper end: whose lower corner is not above.
+        // Lower end: the voxels whose upper corner is not under the plane; upper end: whose lower corner is
+        // not above.
         const bvec2 far_edge = end == 0 ? greaterThan(normal.yz, dvec2(0.0LF)) : lessThan(normal.yz, dvec2(0.0LF));
         const dvec2 d = dvec2(row_low + side * ivec2(far_edge) - t.a.yz);
         const double rest_high = high.y * d.x + high.z * d.y;
@@ -326,7 +329,8 @@ ivec2 exact_row_span(ExactTriangle t, ivec2 row) {
     return span;
 }
 
-// ---- What callers use ----------------------------------------------------------------------------------------------
+// ---- What callers use
+// ----------------------------------------------------------------------------------------------
 
 ExactTriangle exact_triangle(ivec3 a, ivec3 b, ivec3 c, int shift) {
     ExactTriangle t;

@@ -1,5 +1,5 @@
 // Hands a vertex to project.geom.glsl.
-#include "interop/bindings.h"
+#include "interop/surface.h"
 
 layout(location = ATTRIBUTE_POSITION) in ivec3 position;  // lattice units
 out ivec3 corner;

@@ -1,20 +1,20 @@
-// One thread is one triangle: counts those that reach the root cube from further away than SurfaceChunk::positions can hold.
-// deform.comp.glsl has left such vertices just past that.
-#include "interop/bindings.h"
-#include "interop/config.h"
-#include "interop/types.h"
+// One thread is one triangle: counts those that reach the root cube from further away than
+// SurfaceChunk::positions can hold. deform.comp.glsl has left such vertices just past that.
+#include "interop/deform.h"
+#include "interop/grid.h"
 #include "voxelize/surface.glsl"
 
-layout(local_size_x = DEFORM_GROUP) in;
+#define GROUP_SIZE DEFORM_GROUP
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_DEFORM_FRAME) restrict buffer FrameBlock { DeformHeader header; };
 
 uniform uint count;
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * DEFORM_GROUP;
+    const uint thread = thread_index();
     if (thread >= count) return;
-    const uvec4 corners = surface_triangles[thread].vertices_material;
+    const uvec3 corners = surface_triangles[thread].vertices;
     const ivec3 a = surface_position(corners.x);
     const ivec3 b = surface_position(corners.y);
     const ivec3 c = surface_position(corners.z);

@@ -1,24 +1,26 @@
-// A thread is one pair: it clips the triangle to the closed voxel (Sutherland and Hodgman 1974), samples base colour and
-// normal on the piece that is left, and adds them to the voxel's sums, weighted by area.
+// A thread is one pair: it clips the triangle to the closed voxel (Sutherland and Hodgman 1974), samples base
+// colour and normal on the piece that is left, and adds them to the voxel's sums, weighted by area.
 //
-// The piece is found in the triangle's barycentric weights, where each side of the voxel is a line whose values at the
-// three vertices are whole numbers: large triangles lose no accuracy, and those without area still have a piece.
-// It is cut in a fan, and where a texture may vary on it, each triangle of the fan in `rows`^2 equal ones, about as small
-// as a texel: each is sampled at its centroid.
-// defines: HAS_MASK=0
-// defines: HAS_MASK=1
+// The piece is found in the triangle's barycentric weights, where each side of the voxel is a line whose
+// values at the three vertices are whole numbers: large triangles lose no accuracy, and those without area
+// still have a piece. It is cut in a fan, and where a texture may vary on it, each triangle of the fan in
+// `rows`^2 equal ones, about as small as a texel: each is sampled at its centroid.
+#include "interop/surface.h"
+#include "interop/voxelize.h"
 #include "voxelize/attribute_pairs.glsl"
 #include "voxelize/attribute_sums.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_color.glsl"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 uniform ivec3 region_origin;
 uniform int voxel_shift;
 uniform uint count;
 
-// Lattice units: what counts as on a side, so that what only touches the voxel has a piece. Weights are off by 2^-52, and distances to a side are under 2^26.
+// Lattice units: what counts as on a side, so that what only touches the voxel has a piece. Weights are off
+// by 2^-52, and distances to a side are under 2^26.
 const double ON_SIDE = 1.52587890625e-5LF;  // 2^-16
 
 #define MAX_CORNERS 9  // three, and one more for each side that cuts
@@ -86,8 +88,8 @@ int sample_rows(Piece piece, uvec3 vertices, SurfaceMaterial material) {
     return int(clamp(ceil(max(texels_across.x, texels_across.y)), 1.0, float(ATTRIBUTE_SAMPLE_ROWS)));
 }
 
-// The centroid of part `number` of a triangle that is cut in rows^2 parts; rows run along the side from b to c. Row r has
-// r + 1 parts that point like the triangle, and r between them that point the other way.
+// The centroid of part `number` of a triangle that is cut in rows^2 parts; rows run along the side from b to
+// c. Row r has r + 1 parts that point like the triangle, and r between them that point the other way.
 vec2 centroid_of_part(vec2 a, vec2 b, vec2 c, int number, int rows) {
     int row = int(sqrt(float(number)));
     row += int((row + 1) * (row + 1) <= number) - int(row * row > number);
@@ -115,8 +117,8 @@ bool passes(float texel_alpha, float vertex_alpha, SurfaceMaterial material) {
     return uint(round(texel_alpha * 255.0)) * uint(round(vertex_alpha * 255.0 * 256.0)) >= material.alpha_threshold;
 }
 
-// The colour at a sample that is cut away, for a piece that has no other: the voxel is occupied because the piece touches
-// a texel nearby that is not. `weight`: 1, or next to nothing when there is none.
+// The colour at a sample that is cut away, for a piece that has no other: the voxel is occupied because the
+// piece touches a texel nearby that is not. `weight`: 1, or next to nothing when there is none.
 vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 own_color, out float weight) {
     weight = 1.0e-6;
     if (material.width == 0u) return own_color;
@@ -153,12 +155,12 @@ void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, S
 }
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint thread = thread_index();
     if (thread >= count) return;
     const uvec4 pair = pairs[thread];
     const ivec3 voxel = region_origin + ivec3(pair.x & 0xFFFFu, pair.x >> 16, pair.y);
-    const uvec4 triangle = surface_triangles[pair.w].vertices_material;
-    const SurfaceMaterial material = surface_materials[triangle.w];
+    const uvec3 triangle = surface_triangles[pair.w].vertices;
+    const SurfaceMaterial material = surface_materials[surface_triangles[pair.w].material];
     const ivec3 a = surface_position(triangle.x), b = surface_position(triangle.y), c = surface_position(triangle.z);
     const Piece piece = piece_in_voxel(a, b, c, voxel);
     if (piece.count == 0) return;
@@ -167,7 +169,7 @@ void main() {
     const double twice_area = length(cross_product);
     const vec3 own_normal = twice_area > 0.0LF ? vec3(cross_product / twice_area) : vec3(0.0);
     const double side = double(1 << voxel_shift);
-    const int rows = sample_rows(piece, triangle.xyz, material);
+    const int rows = sample_rows(piece, triangle, material);
     const int parts = rows * rows;
     const double faces_of_triangle = 0.5LF * twice_area / (side * side * double(parts));
 
@@ -181,7 +183,7 @@ void main() {
         const float faces = max(float(share * faces_of_triangle), 1.0e-20);
         for (int part = 0; part < parts; ++part) {
             const vec2 middle = centroid_of_part(vec2(first), vec2(p), vec2(q), part, rows);
-            sample_point(shown, hidden, point_at(triangle.xyz, middle), material, own_normal, faces);
+            sample_point(shown, hidden, point_at(triangle, middle), material, own_normal, faces);
         }
     }
     float weight = max(shown.weight, ATTRIBUTE_LEAST_WEIGHT);

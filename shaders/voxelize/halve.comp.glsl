@@ -1,12 +1,11 @@
-// One thread is two words of the coarser level, side by side: each voxel the OR of 2 x 2 x 2 of the finer one, or of 2 x
-// 2 x 1 where all slices are kept (Forest et al. 2009, section 2.3, Figure 4). It reads through a buffer texture, four
-// words at a time where rows allow it: software drivers load from storage buffers lane by lane.
-// defines: WIDE=1
-// defines: WIDE=0
-#include "interop/bindings.h"
-#include "interop/config.h"
+// One thread is two words of the coarser level, side by side: each voxel the OR of 2 x 2 x 2 of the finer
+// one, or of 2 x 2 x 1 where all slices are kept (Forest et al. 2009, section 2.3, Figure 4). It reads
+// through a buffer texture, four words at a time where rows allow it: software drivers load from storage
+// buffers lane by lane.
+#include "interop/voxelize.h"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 layout(binding = TEXTURE_HALVE_FINE) uniform usamplerBuffer fine_bits;  // WIDE: four words a texel, or one
 layout(std430, binding = SSBO_HALVE_COARSE) restrict writeonly buffer CoarseBits { uint coarse_bits[]; };
@@ -40,7 +39,7 @@ uvec4 or_of_pairs(uvec4 word) {
 void main() {
     const int coarse_words = (coarse_size.x + 31) >> 5;
     const int pairs = (coarse_words + 1) >> 1;
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint thread = thread_index();
     if (thread >= uint(pairs * coarse_size.y * coarse_size.z)) return;
     const int coarse_row = int(thread) / pairs;
     const int pair = int(thread) % pairs;

@@ -1,12 +1,15 @@
 // A thread is one slice of one queued triangle that a mask cuts, of slice_count; it lists the voxels of every
 // slice_count-th row, but those that are marked already.
+#include "interop/voxelize.h"
 #include "voxelize/bits.glsl"
 #include "voxelize/candidates.glsl"
+#define ANY_VOXEL_SIDE 0
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
 #include "voxelize/surface.glsl"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 uniform int voxel_shift;
 uniform uint queue;
@@ -16,10 +19,10 @@ uniform uint slice_count;
 uniform uvec2 row_range;   // rows of the triangle's bounding box: first, last + 1
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint thread = thread_index();
     if (thread >= count * slice_count) return;
     const uint triangle = queued(queue, first + thread / slice_count);
-    const uvec4 corners = surface_triangles[triangle].vertices_material;
+    const uvec3 corners = surface_triangles[triangle].vertices;
     const ExactTriangle t = exact_triangle(surface_position(corners.x), surface_position(corners.y),
                                            surface_position(corners.z), voxel_shift);
     const ivec3 low = max(t.low, region_origin);

@@ -1,15 +1,18 @@
-// Lists which triangles touch which occupied voxels of a part: those whose ranks lie in `part`. A row in doubt is listed as
-// far as the triangle may touch: gather_attributes finds that nothing of it lies in the other voxels.
+// Lists which triangles touch which occupied voxels of a part: those whose ranks lie in `part`. A row in
+// doubt is listed as far as the triangle may touch: gather_attributes finds that nothing of it lies in the
+// other voxels.
 // LARGE=0: a thread is one triangle; one with a large box it leaves in the queue.
-// LARGE=1: a thread is one slice of one queued triangle, of slice_count; it lists every slice_count-th row of row_range.
-// defines: LARGE=0
-// defines: LARGE=1
+// LARGE=1: a thread is one slice of one queued triangle, of slice_count; it lists every slice_count-th row of
+// row_range.
+#include "interop/voxelize.h"
 #include "voxelize/attribute_pairs.glsl"
+#define ANY_VOXEL_SIDE 0
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
 #include "voxelize/surface.glsl"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_VOXEL_BITS) restrict readonly buffer VoxelBits { uint voxel_bits[]; };
 layout(std430, binding = SSBO_ATTRIBUTE_RANKS) restrict readonly buffer RankBlock { uint ranks[]; };
@@ -51,7 +54,7 @@ void list_row(ExactTriangle t, RowSlice slice, ivec3 low, ivec3 high, ivec2 row,
 }
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint thread = thread_index();
 #if LARGE
     if (thread >= count * slice_count) return;
     const uint triangle = queued(0u, first + thread / slice_count);
@@ -59,7 +62,7 @@ void main() {
     if (thread >= count) return;
     const uint triangle = has_subset != 0 ? subset[first + thread] : first + thread;
 #endif
-    const uvec4 corners = surface_triangles[triangle].vertices_material;
+    const uvec3 corners = surface_triangles[triangle].vertices;
     const ExactTriangle t = exact_triangle(surface_position(corners.x), surface_position(corners.y),
                                            surface_position(corners.z), voxel_shift);
     const ivec3 low = max(t.low, region_origin + ivec3(0, 0, part_slices.x));

@@ -1,8 +1,10 @@
 // One thread is one triangle of a batch: it goes into the list of its kind if its box touches the tile.
+#include "interop/voxelize.h"
 #include "voxelize/raster_lists.glsl"
 #include "voxelize/surface.glsl"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 layout(std430, binding = SSBO_VOXEL_SUBSET) restrict readonly buffer VoxelSubset { uint voxel_subset[]; };
 uniform uint first;  // triangle, or place in the subset
@@ -29,10 +31,10 @@ uvec2 ends(uvec3 vertices, ivec3 a, ivec3 b, ivec3 c) {
 }
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint thread = thread_index();
     if (thread >= count) return;
     const uint triangle = has_subset != 0 ? voxel_subset[first + thread] : first + thread;
-    const uvec3 vertices = surface_triangles[triangle].vertices_material.xyz;
+    const uvec3 vertices = surface_triangles[triangle].vertices;
     // From here on relative to the tile.
     const ivec3 a = surface_position(vertices.x) - tile_low;
     const ivec3 b = surface_position(vertices.y) - tile_low;

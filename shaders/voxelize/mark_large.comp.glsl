@@ -1,12 +1,15 @@
-// Threads share a queued triangle: threads_a_triangle of them share its steps (row_steps.glsl), and, where there are more
-// threads than steps, the rows of a step.
+// Threads share a queued triangle: threads_a_triangle of them share its steps (row_steps.glsl), and, where
+// there are more threads than steps, the rows of a step.
+#include "interop/voxelize.h"
 #include "voxelize/bits.glsl"
+#define ANY_VOXEL_SIDE 0
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
 #include "voxelize/row_steps.glsl"
 #include "voxelize/surface.glsl"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 uniform int voxel_shift;
 uniform uint queue;
@@ -14,17 +17,17 @@ uniform uint first;               // place in the queue
 uniform uint count;               // of triangles
 uniform uint threads_a_triangle;  // a multiple or a part of a workgroup's
 
-// Rows that the filter leaves in doubt are decided some at a time: lanes run in lockstep, and doubles for one would cost
-// all of them dearly at every turn.
+// Rows that the filter leaves in doubt are decided some at a time: lanes run in lockstep, and doubles for one
+// would cost all of them dearly at every turn.
 #define DOUBT_CAPACITY 64
 ivec2 doubts[DOUBT_CAPACITY];
 
 void main() {
-    const uint invocation = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint invocation = thread_index();
     const uint place = invocation / threads_a_triangle;
     if (place >= count) return;
     const uint triangle = queued(queue, first + place);
-    const uvec4 corners = surface_triangles[triangle].vertices_material;
+    const uvec3 corners = surface_triangles[triangle].vertices;
     const ExactTriangle t = exact_triangle(surface_position(corners.x), surface_position(corners.y),
                                            surface_position(corners.z), voxel_shift);
     const RowSteps steps = row_steps(t, low_in_region(t), high_in_region(t));

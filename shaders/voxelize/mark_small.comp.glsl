@@ -1,15 +1,18 @@
-// One thread is one triangle: it marks those of few rows, and leaves the others to mark_large, and those that a mask cuts
-// to list_masked. Rows in doubt are not decided here: lanes run in lockstep, and doubles for one would cost all of them
-// dearly. A triangle with such a row is marked anew by EXACT=1, whose threads take it from the queue.
-// defines: EXACT=0
-// defines: EXACT=1
+// One thread is one triangle: it marks those of few rows, and leaves the others to mark_large, and those that
+// a mask cuts to list_masked. Rows in doubt are not decided here: lanes run in lockstep, and doubles for one
+// would cost all of them dearly. A triangle with such a row is marked anew by EXACT=1, whose threads take it
+// from the queue.
+#include "interop/surface.h"
+#include "interop/voxelize.h"
 #include "voxelize/bits.glsl"
+#define ANY_VOXEL_SIDE 0
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
 #include "voxelize/row_steps.glsl"
 #include "voxelize/surface.glsl"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 uniform int voxel_shift;
 uniform uint count;
@@ -53,28 +56,30 @@ ivec2 rows_in_region(ExactTriangle t, RowSlice slice, ivec3 low, ivec3 high) {
 #endif
 
 void main() {
-    const uint thread = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP;
+    const uint thread = thread_index();
     if (thread >= count) return;
 #if EXACT
     const uint triangle = queued(VOXEL_QUEUE_DOUBT, thread);
 #else
     const uint triangle = has_subset != 0 ? voxel_subset[first + thread] : first + thread;
 #endif
-    const uvec4 corners = surface_triangles[triangle].vertices_material;
+    const uvec3 corners = surface_triangles[triangle].vertices;
     const ExactTriangle t = exact_triangle(surface_position(corners.x), surface_position(corners.y),
                                            surface_position(corners.z), voxel_shift);
     const ivec3 low = low_in_region(t);
     const ivec3 high = high_in_region(t);
     const ivec3 size = high - low + 1;
 #if !EXACT
-    if (any(lessThan(size, ivec3(1))) || enqueue_if_not_small(t, triangle, corners.w, size)) return;
+    if (any(lessThan(size, ivec3(1)))) return;
+    if (enqueue_if_not_small(t, triangle, surface_triangles[triangle].material, size)) return;
 #endif
 #if EXACT
     for (int z = low.z; z <= high.z; ++z) {
         for (int y = low.y; y <= high.y; ++y) mark_span(ivec2(y, z), exact_row_span(t, ivec2(y, z)));
     }
 #else
-    // One loop over all rows, not one a slice: lanes run in lockstep, and a slice's longest row count would be everyone's.
+    // One loop over all rows, not one a slice: lanes run in lockstep, and a slice's longest row count would
+    // be everyone's.
     bool any_doubt = false;
     int z = low.z;
     RowSlice slice = row_slice(t, z);

@@ -1,16 +1,6 @@
-// One primitive goes to the layer of each direction that looks at it (Forest et al. 2009, section 2.2): the geometry is
-// sent once. All that OpenGL 4.5 promises suffices; project.vert.glsl is the way without a geometry shader.
-// defines: CORNERS=3 COVER=0 AXES=1
-// defines: CORNERS=3 COVER=0 AXES=3
-// defines: CORNERS=3 COVER=1 AXES=0
-// defines: CORNERS=3 COVER=1 AXES=1
-// defines: CORNERS=3 COVER=1 AXES=3
-// defines: CORNERS=2 COVER=0 AXES=1
-// defines: CORNERS=2 COVER=0 AXES=3
-// defines: CORNERS=2 COVER=1 AXES=0
-// defines: CORNERS=1 COVER=0 AXES=1
-// defines: CORNERS=1 COVER=0 AXES=3
-// defines: CORNERS=1 COVER=1 AXES=0
+// One primitive goes to the layer of each direction that looks at it (Forest et al. 2009, section 2.2): the
+// geometry is sent once. All that OpenGL 4.5 promises suffices; project.vert.glsl is the way without a
+// geometry shader.
 #include "voxelize/projection.glsl"
 
 #if AXES == 3

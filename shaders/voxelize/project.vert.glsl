@@ -1,16 +1,5 @@
-// The same as project.geom.glsl without a geometry shader, where the driver lets a vertex shader choose the layer and
-// read storage buffers: an instance is a direction, and each vertex fetches the whole primitive.
-// defines: CORNERS=3 COVER=0 AXES=1
-// defines: CORNERS=3 COVER=0 AXES=3
-// defines: CORNERS=3 COVER=1 AXES=0
-// defines: CORNERS=3 COVER=1 AXES=1
-// defines: CORNERS=3 COVER=1 AXES=3
-// defines: CORNERS=2 COVER=0 AXES=1
-// defines: CORNERS=2 COVER=0 AXES=3
-// defines: CORNERS=2 COVER=1 AXES=0
-// defines: CORNERS=1 COVER=0 AXES=1
-// defines: CORNERS=1 COVER=0 AXES=3
-// defines: CORNERS=1 COVER=1 AXES=0
+// The same as project.geom.glsl without a geometry shader, where the driver lets a vertex shader choose the
+// layer and read storage buffers: an instance is a direction, and each vertex fetches the whole primitive.
 #extension GL_ARB_shader_viewport_layer_array : require
 #include "voxelize/projection.glsl"
 #include "voxelize/raster_lists.glsl"

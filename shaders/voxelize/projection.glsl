@@ -1,6 +1,6 @@
-// A primitive as one of the three directions sees it, and what a fragment needs to know of it: planes and sides are flat
-// inputs of the fragments, from exact vertices, and nothing is interpolated, so that neither the driver's snapping of
-// vertices to parts of a pixel nor its clipping moves a slice.
+// A primitive as one of the three directions sees it, and what a fragment needs to know of it: planes and
+// sides are flat inputs of the fragments, from exact vertices, and nothing is interpolated, so that neither
+// the driver's snapping of vertices to parts of a pixel nor its clipping moves a slice.
 //
 //     CORNERS   of a primitive: 3, 2 or 1
 //     COVER=0   the primitive itself is rasterized, as OpenGL does it
@@ -9,7 +9,7 @@
 //
 //     Projection project(ivec3 corners[CORNERS], int axis)   corners on the lattice; axis: the one that is looked along
 //     void put(Projection p, int corner, uint primitive)     writes the outputs of one vertex
-#include "interop/config.h"
+#include "interop/voxelize.h"
 
 #define VARYING out
 #include "voxelize/slice_inputs.glsl"
@@ -18,8 +18,10 @@ uniform ivec3 tile_low;         // lattice units
 uniform ivec3 region_end;       // the region's high corner, lattice units from tile_low
 uniform int voxel_shift;
 uniform int tall;               // the layer of x has y downwards, not z
-uniform float tile_middle;      // half the longest side of the tile, voxels: where planes and sides are anchored
-uniform float viewport_scale;   // clip units a voxel: the viewport's side is a power of two, so that scaling is exact
+// Half the longest side of the tile, voxels: where planes and sides are anchored.
+uniform float tile_middle;
+// Clip units a voxel: the viewport's side is a power of two, so that scaling is exact.
+uniform float viewport_scale;
 uniform float half_pixel;       // 0.5: fragments touch the primitive; 0: their centres lie in it
 
 // Snapping moves a vertex by up to 1/256 of a pixel; a cover keeps clear of that.
@@ -125,7 +127,8 @@ void cover_needle(inout Projection p, vec2 a, vec2 b, vec2 c, float margin) {
     cover_rectangle(p, a + low.x * along + low.y * across, (high.x - low.x) * along, (high.y - low.y) * across);
 }
 
-// Where two sides cross, both moved outwards: from the corner between them (Hasselgren et al. 2005, section 2.2).
+// Where two sides cross, both moved outwards: from the corner between them (Hasselgren et al. 2005, section
+// 2.2).
 vec2 moved_corner(vec3 before, vec3 after, float margin) {
     const float sine = before.x * after.y - before.y * after.x;
     return vec2(before.y - after.y, after.x - before.x) * (margin / sine);
@@ -133,7 +136,8 @@ vec2 moved_corner(vec3 before, vec3 after, float margin) {
 
 bool is_acute(vec3 before, vec3 after) { return abs(before.x * after.y - before.y * after.x) < ACUTE; }
 
-// A triangle whose pixels hold all that the primitive touches. What it holds beside them, the fragments throw away.
+// A triangle whose pixels hold all that the primitive touches. What it holds beside them, the fragments throw
+// away.
 void cover(inout Projection p, vec2 a, vec2 b, vec2 c) {
     const float margin = half_pixel + COVER_MARGIN;
     const vec2 low = min(min(a, b), c) - margin, high = max(max(a, b), c) + margin;

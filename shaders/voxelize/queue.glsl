@@ -1,7 +1,6 @@
-// Triangles that wait for a later pass over the same batch: VOXEL_QUEUE_COUNT counters, then as many queues, each with
-// room for a whole batch, so that none can overflow.
-#include "interop/bindings.h"
-#include "interop/config.h"
+// Triangles that wait for a later pass over the same batch: VOXEL_QUEUE_COUNT counters, then as many queues,
+// each with room for a whole batch, so that none can overflow.
+#include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_VOXEL_QUEUE) restrict buffer VoxelQueue { uint voxel_queue[]; };
 

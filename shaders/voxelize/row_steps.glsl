@@ -1,4 +1,5 @@
-// The rows of a large triangle, step by step along the longer of y and z, so that rows which it cannot meet cost nothing.
+// The rows of a large triangle, step by step along the longer of y and z, so that rows which it cannot meet
+// cost nothing.
 #include "voxelize/bits.glsl"
 #include "voxelize/exact_triangle.glsl"
 
@@ -19,8 +20,8 @@ RowSteps row_steps(ExactTriangle t, ivec3 low, ivec3 high) {
     steps.low = steps.along_z ? low.zy : low.yz;
     steps.high = steps.along_z ? high.zy : high.yz;
     steps.count = steps.high.x - steps.low.x + 1;
-    // Across, a triangle is never wider than twice its area by its length, and lies beside its longest edge, which shifts
-    // by at most one in one step; the rest is for closed voxels at both ends and for rounding.
+    // Across, a triangle is never wider than twice its area by its length, and lies beside its longest edge,
+    // which shifts by at most one in one step; the rest is for closed voxels at both ends and for rounding.
     const float unit = 1.0 / float(1 << t.shift);
     const float twice_area = float(abs(t.normal.x)) * unit * unit;
     const float widest = t.filtered ? twice_area / max(float(max(size.x, size.y)) - 2.0, 1.0) + 6.0 : FAR_AWAY;

@@ -1,23 +1,8 @@
-// Sets the bits of the slices that a primitive meets in a column of voxels (Forest et al. 2009, section 2.2): the logic
-// operation OR gathers them in the targets, of RASTER_TARGET_SLICES slices each.
-// defines: COVER=0 MASKED=0 TARGETS=1
-// defines: COVER=0 MASKED=0 TARGETS=2
-// defines: COVER=0 MASKED=0 TARGETS=4
-// defines: COVER=0 MASKED=0 TARGETS=8
-// defines: COVER=0 MASKED=1 TARGETS=1
-// defines: COVER=0 MASKED=1 TARGETS=2
-// defines: COVER=0 MASKED=1 TARGETS=4
-// defines: COVER=0 MASKED=1 TARGETS=8
-// defines: COVER=1 MASKED=0 TARGETS=1
-// defines: COVER=1 MASKED=0 TARGETS=2
-// defines: COVER=1 MASKED=0 TARGETS=4
-// defines: COVER=1 MASKED=0 TARGETS=8
-// defines: COVER=1 MASKED=1 TARGETS=1
-// defines: COVER=1 MASKED=1 TARGETS=2
-// defines: COVER=1 MASKED=1 TARGETS=4
-// defines: COVER=1 MASKED=1 TARGETS=8
+// Sets the bits of the slices that a primitive meets in a column of voxels (Forest et al. 2009, section 2.2):
+// the logic operation OR gathers them in the targets, of RASTER_TARGET_SLICES slices each.
 #define VARYING in
-#include "interop/config.h"
+#include "interop/surface.h"
+#include "interop/voxelize.h"
 #include "voxelize/slice_inputs.glsl"
 #if MASKED
 #include "voxelize/surface_color.glsl"
@@ -33,7 +18,8 @@ uniform float slack;  // voxels: more than the rounding of a plane or a side ins
 uniform uint kind;    // of the list
 
 #if COVER
-// Whether the pixel (its centre, where half_pixel is 0) touches the primitive, as far as this direction can tell.
+// Whether the pixel (its centre, where half_pixel is 0) touches the primitive, as far as this direction can
+// tell.
 bool touches(vec2 place) {
     const vec3 p = vec3(place, 1.0);
     const float nearest = min(min(dot(slice_side_a, p), dot(slice_side_b, p)), dot(slice_side_c, p));
@@ -82,7 +68,7 @@ uvec4 slice_bits(ivec2 range, int target) {
 // The texel under the pixel's centre, or at the nearest point of the primitive.
 bool is_shown(vec2 place) {
     const uint triangle = raster_lists[triangle_place(kind, slice_primitive)];
-    const SurfaceMaterial material = surface_materials[surface_triangles[triangle].vertices_material.w];
+    const SurfaceMaterial material = surface_materials[surface_triangles[triangle].material];
     if ((material.flags >> MATERIAL_MASK_BIT & 1u) == 0u) return true;
     const uint corners = corners_of(kind);
     const uint vertex = first_vertex(kind) + slice_primitive * corners;
@@ -106,6 +92,7 @@ void main() {
 #if MASKED
     if (!is_shown(place)) range = ivec2(0, -1);
 #endif
-    // Nothing is discarded: a word without bits changes nothing. Depths past the ends of the tile set no bit either.
+    // Nothing is discarded: a word without bits changes nothing. Depths past the ends of the tile set no bit
+    // either.
     for (int target = 0; target < TARGETS; ++target) slices[target] = slice_bits(range, target);
 }

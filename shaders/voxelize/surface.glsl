@@ -1,7 +1,5 @@
 // The surface as voxelizer/surface/surface.h uploads it (one chunk is bound at a time).
-#include "interop/bindings.h"
-#include "interop/config.h"
-#include "interop/types.h"
+#include "interop/surface.h"
 
 layout(std430, binding = SSBO_SURFACE_POSITIONS) restrict readonly buffer SurfacePositions {
     int surface_positions[];

@@ -1,4 +1,5 @@
 // Base colour and normal of a surface at a point of one of its triangles.
+#include "interop/surface.h"
 #include "voxelize/octahedral.glsl"
 #include "voxelize/surface_attributes.glsl"
 

@@ -1,13 +1,12 @@
 // Joins a target of one direction with the bits of the region (Forest et al. 2009, section 2.2, Figure 3).
 //
-// Along x, a channel of a texel is a word of a row: one thread is one texel. Along y and z, one thread takes 32 texels of a
-// row, whose bits in one slice are a word.
-// defines: ALONG_X=0
-// defines: ALONG_X=1
+// Along x, a channel of a texel is a word of a row: one thread is one texel. Along y and z, one thread takes
+// 32 texels of a row, whose bits in one slice are a word.
 #include "voxelize/bits.glsl"
-#include "interop/config.h"
+#include "interop/voxelize.h"
 
-layout(local_size_x = VOXEL_GROUP) in;
+#define GROUP_SIZE VOXEL_GROUP
+#include "common/thread.glsl"
 
 layout(binding = TEXTURE_SLICES) uniform usampler2DArray target_slices;
 uniform ivec3 tile_place;  // voxels from the region's low corner; x is a multiple of 32
@@ -41,8 +40,8 @@ uvec4 column_bits(int word, int other, int column) {
     return texel.x < tile_size.x ? texelFetch(target_slices, ivec3(texel, layer), 0) : uvec4(0u);
 }
 
-// Surfaces meet few of the slices in a row, so that reading the row again for each of them is cheaper than to hold 32
-// texels in private memory, which drivers unroll.
+// Surfaces meet few of the slices in a row, so that reading the row again for each of them is cheaper than to
+// hold 32 texels in private memory, which drivers unroll.
 void unite_texels(int word, int other) {
     uvec4 met = uvec4(0u);
     for (int column = 0; column < 32; ++column) met |= column_bits(word, other, column);
@@ -66,7 +65,7 @@ void unite_texels(int word, int other) {
 #endif
 
 void main() {
-    const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * VOXEL_GROUP);
+    const int thread = int(thread_index());
 #if ALONG_X
     const int across = tall != 0 ? tile_size.z : tile_size.y;
     const int down = tall != 0 ? tile_size.y : tile_size.z;

@@ -18,7 +18,8 @@
 #include "app/options/shadow_options.h"
 #include "app/options/view_options.h"
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/pool.h"
+#include "shaders/interop/shadow_rays.h"
 
 namespace cairn::test {
 namespace {

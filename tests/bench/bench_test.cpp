@@ -7,6 +7,7 @@
 #include "reference/exact_voxels.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/grid.h"
 #include "tests/support/lattice_surface.h"
 
 namespace cairn::bench {

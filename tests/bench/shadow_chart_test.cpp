@@ -9,7 +9,7 @@
 #include "bench/trials/shadow_runs.h"
 #include "bench/trials/shadow_scene.h"
 #include "reference/shadow_truth.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/mesh.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/scratch_folder.h"
 

@@ -13,6 +13,7 @@
 #include "bench/peers/view_tiles.h"
 #include "bench/trials/frames.h"
 #include "renderer/march/march_view.h"
+#include "shaders/interop/march.h"
 #include "tests/support/gl_fixture.h"
 
 namespace cairn::bench {
@@ -107,9 +108,10 @@ TEST_F(VisibilityTest, WhatAWallHidesIsNotProduced) {
 bool reaches(const interop::MarchView& view, const Box& box, const std::vector<float>& inverse_depths,
              double depth_slack) {
     const glm::dvec3 eye(view.eye);
-    for (int y = 0; y < view.size_shadow.y; ++y) {
-        for (int x = 0; x < view.size_shadow.x; ++x) {
-            const glm::dvec2 place = (glm::dvec2(x, y) + 0.5) / glm::dvec2(view.size_shadow) * 2.0 - 1.0;
+    for (int y = 0; y < view.height; ++y) {
+        for (int x = 0; x < view.width; ++x) {
+            const glm::dvec2 place =
+                (glm::dvec2(x, y) + 0.5) / glm::dvec2(view.width, view.height) * 2.0 - 1.0;
             // Along the view it advances by 1 a unit.
             const glm::dvec3 ray =
                 glm::dvec3(view.forward) + place.x * glm::dvec3(view.right) - place.y * glm::dvec3(view.up);
@@ -119,7 +121,7 @@ bool reaches(const interop::MarchView& view, const Box& box, const std::vector<f
             const glm::dvec3 out = glm::max(a, b);
             const double enters = std::max({in.x, in.y, in.z, 0.0});
             if (enters > std::min({out.x, out.y, out.z})) continue;
-            const double inverse = inverse_depths[std::size_t(y * view.size_shadow.x + x)];
+            const double inverse = inverse_depths[std::size_t(y * view.width + x)];
             if (inverse == 0.0 || enters * (1.0 + depth_slack) <= 1.0 / inverse) return true;
         }
     }

@@ -1,6 +1,7 @@
 // The OpenGL layer, on whatever driver this machine offers.
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <numeric>
@@ -16,6 +17,7 @@
 #include "gl/context.h"
 #include "gl/limits.h"
 #include "gl/program.h"
+#include "gl/program_family.h"
 #include "gl/shader_source.h"
 #include "gl/timer.h"
 #include "tests/support/gl_fixture.h"
@@ -213,6 +215,100 @@ TEST_F(Shaders, LinesAfterAnIncludeKeepTheirNumbers) {
           "}\n");
     const Error error = error_of([&] { (void)build_compute(source(), "top.comp.glsl"); });
     EXPECT_NE(std::string(error.what()).find("top.comp.glsl:4"), std::string::npos) << error.what();
+    (void)context().debug_log().take();
+}
+
+/// The text of an entry point, resolved with these definitions.
+class Macros : public testing::Test {
+protected:
+    std::string resolve(const std::string& text, const Defines& defines = {}) {
+        write_text(folder_.file("top.comp.glsl"), text);
+        return ShaderSource(folder_.path()).resolve("top.comp.glsl", defines).text;
+    }
+    std::string fault_of(const std::string& text, const Defines& defines = {}) {
+        return error_of([&] { (void)resolve(text, defines); }).what();
+    }
+    ScratchFolder folder_;
+};
+
+TEST_F(Macros, ANameThatNobodyDefinedIsAnErrorInIf) {
+    EXPECT_EQ(fault_of("// one\n#if SHADOW_CONE\n#endif\n", {{"SHADOW_CONES", "1"}}),
+              "top.comp.glsl:2: \"SHADOW_CONE\" is not defined");
+    EXPECT_EQ(fault_of("#if A\n#elif A && (B > 1)  // C\n#endif\n", {{"A", "0"}}),
+              "top.comp.glsl:2: \"B\" is not defined");
+    EXPECT_EQ(fault_of("#if defined(A)\n#endif\n", {{"A", "0"}}),
+              "top.comp.glsl:1: \"defined\" is not defined");
+    // A name counts from its definition on.
+    EXPECT_EQ(fault_of("#if LATE\n#endif\n#define LATE 1\n"), "top.comp.glsl:1: \"LATE\" is not defined");
+}
+
+TEST_F(Macros, TheErrorNamesTheFileThatIsIncluded) {
+    write_text(folder_.file("part.glsl"), "#define HERE 1\n#if HERE\n#endif\n\n#if NOT_HERE\n#endif\n");
+    EXPECT_EQ(fault_of("#include \"part.glsl\"\n"), "part.glsl:5: \"NOT_HERE\" is not defined");
+}
+
+TEST_F(Macros, DefinedNamesPass) {
+    EXPECT_NE(resolve("#define B 0x3\n  # if A == 1 || !B\n#endif\n#define C(x) (x)\n#if C(A) > 0\n#endif\n",
+                      {{"A", "1"}})
+                  .find("C(A)"),
+              std::string::npos);
+}
+
+TEST_F(Macros, AFeatureIsNotTestedByIfdef) {
+    EXPECT_EQ(fault_of("\n#ifdef WITH_MESHES\n#endif\n", {{"WITH_MESHES", "1"}}),
+              "top.comp.glsl:2: \"WITH_MESHES\" is tested by #ifdef: a feature is always defined, and tested "
+              "by #if");
+    EXPECT_EQ(fault_of("#ifndef MIPS\n// a default\n#define MIPS 0\n#endif\n"),
+              "top.comp.glsl:1: \"MIPS\" is tested by #ifndef, and guards no file");
+}
+
+TEST_F(Macros, WhatIsForCppIsLeftOut) {
+    const std::string text = resolve(
+        "#ifndef GUARD_H\n#define GUARD_H\n#ifdef __cplusplus\n#include <glm/glm.hpp>\n#if NO_MACRO_OF_OURS\n"
+        "static_assert(true);\n#endif\n#include \"no/such.h\"\n#endif\nfloat kept;\n#endif\n");
+    EXPECT_EQ(text,
+              "#version 450 core\n#line 1 0\n#ifndef GUARD_H\n#define GUARD_H\n\n\n\n\n\n\n\nfloat "
+              "kept;\n#endif\n");
+}
+
+TEST_F(Shaders, AFamilyBuildsEachProgramOnce) {
+    struct Variant {
+        bool doubled = false;
+        int offset = 0;
+        auto operator<=>(const Variant&) const = default;
+    };
+    write("variant.comp.glsl",
+          "layout(local_size_x = 1) in;\nlayout(std430, binding = 0) buffer B { int value; };\n"
+          "void main() {\n#if DOUBLED\n    value *= 2;\n#endif\n    value += OFFSET;\n}\n");
+    int built = 0;
+    ProgramFamily<Variant> family([&built, shaders = source()](const Variant& variant) {
+        ++built;
+        return build_compute(
+            shaders, "variant.comp.glsl",
+            {{"DOUBLED", variant.doubled ? "1" : "0"}, {"OFFSET", std::to_string(variant.offset)}});
+    });
+    EXPECT_EQ(built, 0);
+    const std::array<int, 1> start = {10};
+    const Buffer buffer = Buffer::of(std::span<const int>(start), "value");
+    buffer.bind_storage(0);
+    for (const Variant& variant : {Variant{true, 3}, Variant{false, 1}, Variant{true, 3}}) {
+        family.get(variant).use();
+        dispatch_threads(1, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    }
+    EXPECT_EQ(buffer.read_all<int>(1).front(), ((10 * 2 + 3) + 1) * 2 + 3);
+    EXPECT_EQ(built, 2);
+    EXPECT_EQ(family.size(), 2U);
+}
+
+TEST_F(Shaders, AFamilyKeepsNothingOfAProgramThatDoesNotBuild) {
+    write("broken.comp.glsl", "#if BROKEN\noops\n#endif\nlayout(local_size_x = 1) in;\nvoid main() {}\n");
+    ProgramFamily<bool> family([shaders = source()](bool broken) {
+        return build_compute(shaders, "broken.comp.glsl", {{"BROKEN", broken ? "1" : "0"}});
+    });
+    (void)error_of([&] { (void)family.get(true); });
+    EXPECT_EQ(family.size(), 0U);
+    EXPECT_NE(family.get(false).id(), 0U);
     (void)context().debug_log().take();
 }
 

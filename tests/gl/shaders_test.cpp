@@ -1,17 +1,12 @@
 // Every shader that a program is built from compiles: on the driver, and with the reference compiler, which
-// is stricter than drivers are.
-//
-// An entry point is called <verb>.<stage>.glsl. Where it needs definitions, lines at its top list them, one
-// line for each set that the program uses:
-//
-//     // defines: TREE_N=4 BRICK_M=16
-//     // defines: TREE_N=2 BRICK_M=8
+// is stricter than drivers are. Which definitions an entry point (<verb>.<stage>.glsl) is compiled with, the
+// libraries say that build programs from it.
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,9 +15,12 @@
 
 #include "gl/handle.h"
 #include "gl/shader_source.h"
+#include "gl/shader_variants.h"
+#include "renderer/shader_variants.h"
 #include "shaders/embedded.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/scratch_folder.h"
+#include "voxelizer/shader_variants.h"
 
 namespace cairn::gl {
 namespace {
@@ -32,12 +30,16 @@ using cairn::test::read_text;
 using cairn::test::ScratchFolder;
 using cairn::test::write_text;
 
-/// One way in which an entry point is compiled.
+/// An entry point, and some of the sets of definitions that it is compiled with.
 struct Case {
     std::string name;
     std::string stage;
-    Defines defines;
+    std::vector<Defines> sets;
+    std::size_t number = 0;  ///< among those of the entry point
 };
+
+/// Sets of one test. A process for each would take longer to start than to compile.
+constexpr std::size_t sets_per_case = 6;
 
 const std::map<std::string, GLenum> stages = {{"comp", GL_COMPUTE_SHADER},
                                               {"vert", GL_VERTEX_SHADER},
@@ -50,31 +52,54 @@ std::string stage_of(const std::filesystem::path& name) {
     return inner.empty() ? "" : inner.substr(1);
 }
 
-std::vector<Defines> define_sets(std::string_view text) {
-    constexpr std::string_view mark = "// defines:";
+/// Rays of surfaces, for the shader of a chart that takes the place of the primary one.
+std::vector<ShaderVariants> of_charts() {
     std::vector<Defines> sets;
-    std::istringstream lines{std::string(text)};
-    for (std::string line; std::getline(lines, line);) {
-        if (!line.starts_with(mark)) continue;
-        Defines& defines = sets.emplace_back();
-        std::istringstream words(line.substr(mark.size()));
-        for (std::string word; words >> word;) {
-            const std::size_t equals = word.find('=');
-            defines.emplace_back(word.substr(0, equals),
-                                 equals == std::string::npos ? "" : word.substr(equals + 1));
+    for (const renderer::MarchSetting& setting : renderer::march_settings()) {
+        if (!setting.kind.of_surfaces() || setting.kind.has_constant) continue;
+        for (const bool progressive : {false, true}) {
+            if (progressive && setting.tile_queries == renderer::TileQueries::blocks) continue;
+            sets.push_back(renderer::defines(setting));
+            for (const auto& define : renderer::defines(renderer::MarchVariant{.progressive = progressive}))
+                sets.back().push_back(define);
         }
     }
-    if (sets.empty()) sets.emplace_back();
-    return sets;
+    return {{"bench/saturate.comp.glsl", sets}, {"bench/test_box.frag.glsl"}, {"bench/test_box.vert.glsl"}};
+}
+
+/// By entry point. Sets that differ only in macros that the text does not name are one.
+std::map<std::string, std::vector<Defines>> all_variants() {
+    std::map<std::string, std::vector<Defines>> all;
+    for (const auto& list : {voxelizer::shader_variants(), renderer::shader_variants(), of_charts()}) {
+        for (const ShaderVariants& entry : list) {
+            std::set<std::string> texts;
+            for (const Defines& defines : entry.defines) {
+                const std::string text = ShaderSource().resolve(entry.name, defines).text;
+                const std::string body = text.substr(text.find("#line"));
+                Defines named;
+                std::string key;
+                for (const auto& define : defines) {
+                    if (body.find(define.first) == std::string::npos) continue;
+                    named.push_back(define);
+                    key += define.first + "=" + define.second + " ";
+                }
+                if (texts.insert(key).second) all[entry.name].push_back(named);
+            }
+        }
+    }
+    return all;
 }
 
 std::vector<Case> all_cases() {
     std::vector<Case> cases;
-    for (const shaders::EmbeddedFile& file : shaders::embedded_files()) {
-        const std::string stage = stage_of(file.name);
-        if (stage.empty()) continue;
-        for (const Defines& defines : define_sets(file.text))
-            cases.push_back({std::string(file.name), stage, defines});
+    for (const auto& [name, sets] : all_variants()) {
+        for (std::size_t first = 0; first < sets.size(); first += sets_per_case) {
+            const std::size_t last = std::min(first + sets_per_case, sets.size());
+            cases.push_back({name,
+                             stage_of(name),
+                             {sets.begin() + std::ptrdiff_t(first), sets.begin() + std::ptrdiff_t(last)},
+                             first / sets_per_case});
+        }
     }
     return cases;
 }
@@ -87,12 +112,14 @@ std::string text_of(const Defines& defines) {
 }
 
 void PrintTo(const Case& c, std::ostream* out) {
-    *out << c.name << text_of(c.defines);
+    *out << c.name;
+    for (const Defines& defines : c.sets)
+        *out << "\n " << text_of(defines);
 }
 
 /// A name of letters, digits and underscores, as GoogleTest wants.
 std::string test_name(const ::testing::TestParamInfo<Case>& info) {
-    std::string name = info.param.name + text_of(info.param.defines);
+    std::string name = fmt::format("{}_{}", info.param.name, info.param.number);
     for (char& c : name) {
         if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
     }
@@ -104,30 +131,39 @@ class EveryShader : public GlTest, public ::testing::WithParamInterface<Case> {}
 TEST_P(EveryShader, PassesTheReferenceCompiler) {
     const Case& shader = GetParam();
     ASSERT_TRUE(stages.contains(shader.stage)) << shader.name << ": \"" << shader.stage << "\" is no stage";
-    const ResolvedSource resolved = ShaderSource().resolve(shader.name, shader.defines);
     const ScratchFolder folder;
-    write_text(folder.file("shader.glsl"), resolved.text);
-    const int status = std::system(fmt::format("'{}' -S {} '{}' > '{}' 2>&1", CAIRN_GLSLANG_VALIDATOR,
-                                               shader.stage, folder.file("shader.glsl"), folder.file("log"))
+    std::string paths;
+    std::string legend;
+    for (std::size_t i = 0; i < shader.sets.size(); ++i) {
+        const ResolvedSource resolved = ShaderSource().resolve(shader.name, shader.sets[i]);
+        const std::string path = folder.file(fmt::format("{}.glsl", i));
+        write_text(path, resolved.text);
+        paths += " '" + path + "'";
+        legend += fmt::format("\n{}.glsl:{}", i, text_of(shader.sets[i]));
+        for (std::size_t file = 0; file < resolved.files.size(); ++file)
+            legend += fmt::format("\n  {}: {}", file, resolved.files[file]);
+    }
+    const int status = std::system(fmt::format("'{}' -S {}{} > '{}' 2>&1", CAIRN_GLSLANG_VALIDATOR,
+                                               shader.stage, paths, folder.file("log"))
                                        .c_str());
-    std::string files;
-    for (std::size_t i = 0; i < resolved.files.size(); ++i)
-        files += fmt::format("\n  {}: {}", i, resolved.files[i]);
-    EXPECT_EQ(status, 0) << read_text(folder.file("log")) << "files by number:" << files;
+    EXPECT_EQ(status, 0) << read_text(folder.file("log")) << "files by number:" << legend;
 }
 
 TEST_P(EveryShader, CompilesOnTheDriver) {
     const Case& shader = GetParam();
-    const ResolvedSource resolved = ShaderSource().resolve(shader.name, shader.defines);
-    const char* text = resolved.text.c_str();
-    const ShaderHandle handle(glCreateShader(stages.at(shader.stage)));
-    glShaderSource(handle.id(), 1, &text, nullptr);
-    glCompileShader(handle.id());
-    GLint compiled = GL_FALSE;
-    glGetShaderiv(handle.id(), GL_COMPILE_STATUS, &compiled);
-    std::string log(10000, '\0');
-    glGetShaderInfoLog(handle.id(), GLsizei(log.size()), nullptr, log.data());
-    EXPECT_EQ(compiled, GL_TRUE) << shader.name << " on " << driver_name() << "\n" << log.c_str();
+    for (const Defines& defines : shader.sets) {
+        const ResolvedSource resolved = ShaderSource().resolve(shader.name, defines);
+        const char* text = resolved.text.c_str();
+        const ShaderHandle handle(glCreateShader(stages.at(shader.stage)));
+        glShaderSource(handle.id(), 1, &text, nullptr);
+        glCompileShader(handle.id());
+        GLint compiled = GL_FALSE;
+        glGetShaderiv(handle.id(), GL_COMPILE_STATUS, &compiled);
+        std::string log(10000, '\0');
+        glGetShaderInfoLog(handle.id(), GLsizei(log.size()), nullptr, log.data());
+        EXPECT_EQ(compiled, GL_TRUE) << shader.name << text_of(defines) << " on " << driver_name() << "\n"
+                                     << log.c_str();
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Shaders, EveryShader, ::testing::ValuesIn(all_cases()), test_name);
@@ -147,11 +183,22 @@ TEST(EmbeddedShaders, AreTheFilesOfTheFolder) {
     }
 }
 
+TEST(EmbeddedShaders, EntryPointsAllHaveAListOfDefinitions) {
+    const auto listed = all_variants();
+    for (const shaders::EmbeddedFile& file : shaders::embedded_files()) {
+        const std::string name(file.name);
+        if (stage_of(name).empty()) continue;
+        EXPECT_TRUE(listed.contains(name)) << name << " is in no library's shader_variants()";
+    }
+}
+
 TEST(EmbeddedShaders, FragmentsAreAllIncluded) {
     std::set<std::string> used;
-    for (const Case& shader : all_cases()) {
-        for (const std::string& file : ShaderSource().resolve(shader.name, shader.defines).files)
-            used.insert(file);
+    for (const auto& [name, sets] : all_variants()) {
+        for (const Defines& defines : sets) {
+            for (const std::string& file : ShaderSource().resolve(name, defines).files)
+                used.insert(file);
+        }
     }
     for (const shaders::EmbeddedFile& file : shaders::embedded_files()) {
         const std::string name(file.name);

@@ -162,7 +162,7 @@ protected:
         for (const char* file :
              {"base/error.h", "gl/buffer.h", "voxelizer/grid.h", "voxelizer/methods/voxelizer.h",
               "renderer/pool/pool.h", "renderer/march/march.h", "renderer/renderer.h",
-              "shaders/interop/config.h", "shaders/march/march.glsl", "reference/exact.h"}) {
+              "shaders/interop/march.h", "shaders/march/march.glsl", "reference/exact.h"}) {
             add(file, "#pragma once\n");
         }
     }
@@ -181,7 +181,7 @@ TEST_F(FakeTree, WithArrowsAlongTheWayHasNoViolation) {
     add("renderer/renderer.cpp",
         "#include \"renderer/march/march.h\"\n#include \"voxelizer/methods/voxelizer.h\"\n");
     add("reference/exact.cpp", "#include <embree3/rtcore.h>\n#include \"voxelizer/grid.h\"\n");
-    add("shaders/march/shadow.comp.glsl", "#include \"march/march.glsl\"\n#include \"interop/config.h\"\n");
+    add("shaders/march/shadow.comp.glsl", "#include \"march/march.glsl\"\n#include \"interop/march.h\"\n");
     add("tests/a_test.cpp",
         "#include \"reference/exact.h\"\n#include \"fixture.h\"\n#include <tiny_gltf.h>\n");
     EXPECT_EQ(found(), std::vector<std::string>{});
@@ -193,7 +193,7 @@ TEST_F(FakeTree, WithArrowsAgainstTheWayNamesFileAndLine) {
     add("reference/exact.cpp", "#include \"voxelizer/methods/voxelizer.h\"\n");
     add("renderer/pool/pool.cpp", "#include \"renderer/march/march.h\"\n");
     add("renderer/extra/extra.cpp", "#include \"renderer/pool/pool.h\"\n");
-    add("shaders/interop/types.h", "#include \"march/march.glsl\"\n");
+    add("shaders/interop/surface.h", "#include \"march/march.glsl\"\n");
     add("voxelizer/grid.cpp", "#include \"grid.h\"\n#include \"reference/exact.h\"\n");
     const std::vector<std::string> expected = {
         "base/error.cpp:2: base/ may not include \"gl/buffer.h\"",
@@ -201,7 +201,7 @@ TEST_F(FakeTree, WithArrowsAgainstTheWayNamesFileAndLine) {
         "reference/exact.cpp:1: reference/ may not include \"voxelizer/methods/voxelizer.h\"",
         "renderer/extra/extra.cpp:1: the table names no such folder",
         "renderer/pool/pool.cpp:1: renderer/pool/ may not include \"renderer/march/march.h\"",
-        "shaders/interop/types.h:1: shaders/interop/ may not include \"march/march.glsl\"",
+        "shaders/interop/surface.h:1: shaders/interop/ may not include \"march/march.glsl\"",
         "voxelizer/grid.cpp:1: \"grid.h\" does not exist, seen from the project's root",
         "voxelizer/grid.cpp:2: voxelizer/ may not include \"reference/exact.h\"",
     };

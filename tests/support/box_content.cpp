@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/pool.h"
 
 namespace cairn::test {
 namespace {

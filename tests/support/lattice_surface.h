@@ -12,6 +12,7 @@
 #include "reference/exact_voxels.h"
 #include "reference/separating_axes.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/grid.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::test {
@@ -47,7 +48,7 @@ inline voxelizer::Surface lattice_surface(const std::vector<LatticeTriangle>& tr
         const auto first = std::uint32_t(chunk.positions.size());
         for (const glm::i64vec3& p : triangle)
             chunk.positions.push_back({int(p.x), int(p.y), int(p.z)});
-        chunk.triangles.push_back({{first, first + 1, first + 2, 0}});
+        chunk.triangles.push_back({{first, first + 1, first + 2}, 0});
     }
     return surface;
 }

@@ -8,6 +8,9 @@
 
 #include "reference/exact_voxels.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::test {
@@ -93,7 +96,7 @@ void gather(const voxelizer::Surface& one, int fine_level, int side, std::vector
         const auto& p = chunk.positions[v];
         return ivec3(p[0], p[1], p[2]);
     };
-    const glm::uvec4 t = chunk.triangles[0].vertices_material;
+    const glm::uvec3 t = chunk.triangles[0].vertices;
     const ivec3 a = corner(t.x);
     const ivec3 b = corner(t.y);
     const ivec3 c = corner(t.z);

@@ -13,6 +13,7 @@
 
 #include "reference/exact_voxels.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/surface.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "voxelizer/methods/conservative_voxelizer.h"

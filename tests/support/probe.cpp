@@ -6,9 +6,10 @@
 #include "gl/handle.h"
 #include "gl/program.h"
 #include "gl/shader_source.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
-#include "shaders/interop/types.h"
+#include "renderer/march/march_programs.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/tile_query.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::test {
 namespace {
@@ -32,7 +33,7 @@ void main() {
     if (i >= probe_count || probes[i].state.x > 1) return;
     Ray ray = make_ray(probes[i].origin_t.xyz, probes[i].direction.xyz, 1e30, 0.0, 0.0);
 #if WINDOWS
-    ray.origin = windows.of[0].eye.xyz;
+    ray.origin = windows.of[0].eye;
     ray.from_eye = true;
 #endif
     seen = ivec4(-1);
@@ -58,11 +59,13 @@ void main() {
 )";
 
 gl::Program build(const renderer::TreeShape& shape) {
-    gl::Defines defines = shape.defines(false);
-    defines.emplace_back("PROGRESSIVE", "0");
+    const auto traversal =
+        shape.has_windows() ? renderer::Traversal::restart : renderer::Traversal::mini_stack;
+    gl::Defines defines = renderer::defines({.shape = shape, .traversal = traversal});
+    for (const auto& define : renderer::defines(renderer::MarchVariant{}))
+        defines.push_back(define);
     defines.emplace_back("RAYS_WIDEN", "0");
-    defines.emplace_back("TRAVERSAL",
-                         std::to_string(shape.has_windows() ? TRAVERSAL_RESTART : TRAVERSAL_MINI_STACK));
+    defines.emplace_back("VISIT_TURNS", "0");
     const std::string text = gl::ShaderSource().resolve("march/march.glsl", defines).text + probe_shader;
     const char* source = text.c_str();
     const gl::ShaderHandle shader(glCreateShader(GL_COMPUTE_SHADER));

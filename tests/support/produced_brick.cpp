@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "renderer/produce/tile_lists.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/pool.h"
 
 namespace cairn::test {
 namespace {

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "shaders/interop/config.h"
-
 namespace cairn::test {
 
 using glm::dvec2;

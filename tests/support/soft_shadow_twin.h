@@ -5,6 +5,7 @@
 
 #include "renderer/shadow/soft_shadow_map.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/shadow_map.h"
 
 /// The soft shadow map once more: on the CPU, in double, without penumbra extents. Every micro-patch is tried
 /// on every receiver.

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/pool/tree.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/pool.h"
 
 /// Looks at a Tree from outside: what its entries say, in the mirror and on the GPU.
 namespace cairn::test {

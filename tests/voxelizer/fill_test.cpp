@@ -8,6 +8,8 @@
 
 #include "base/error.h"
 #include "scenes/load.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/test_scenes.h"
 
@@ -326,7 +328,7 @@ TEST(SolidFill, LeavesOutWhatAMaskCutsAndWhatHasNoArea) {
     surface.materials.resize(2);
     surface.materials[1].flags = 1U << MATERIAL_MASK_BIT;
     for (interop::SurfaceTriangle& t : surface.chunks[0].triangles)
-        t.vertices_material.w = 1;
+        t.material = 1;
     EXPECT_EQ(interior(SolidFill(surface, region), region).count(), 0U);
 
     Mesh mesh = box(low, high, random);
@@ -408,7 +410,7 @@ Mesh mesh_of(const Surface& surface) {
         for (const interop::SurfaceTriangle& triangle : chunk.triangles) {
             LatticeTriangle t;
             for (int i = 0; i < 3; ++i) {
-                const auto& p = chunk.positions[triangle.vertices_material[i]];
+                const auto& p = chunk.positions[triangle.vertices[i]];
                 t[std::size_t(i)] = {p[0], p[1], p[2]};
             }
             mesh.push_back(t);

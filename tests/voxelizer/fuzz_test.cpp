@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "shaders/interop/grid.h"
 #include "tests/support/clipped_triangle.h"
 #include "tests/support/voxelizer_fixture.h"
 #include "voxelizer/surface/wide_integer.h"

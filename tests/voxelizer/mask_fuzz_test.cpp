@@ -3,6 +3,7 @@
 // (voxelizer/surface/exact_mask.h). CAIRN_FUZZ_TRIALS and CAIRN_FUZZ_SEED ask for a longer trial.
 #include <gtest/gtest.h>
 
+#include "shaders/interop/surface.h"
 #include "tests/support/clipped_triangle.h"
 #include "tests/support/fuzz.h"
 #include "tests/support/masked_scene.h"

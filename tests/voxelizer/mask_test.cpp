@@ -2,6 +2,7 @@
 // samples.
 #include <gtest/gtest.h>
 
+#include "shaders/interop/surface.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/masked_scene.h"
 #include "tests/support/voxelizer_fixture.h"

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/load.h"
+#include "shaders/interop/surface.h"
 #include "tests/support/voxelizer_fixture.h"
 
 namespace cairn::voxelizer {
@@ -47,7 +48,7 @@ std::vector<LatticeTriangle> triangles_of(const std::string& path) {
         for (const interop::SurfaceTriangle& t : chunk.triangles) {
             LatticeTriangle& out = triangles.emplace_back();
             for (int corner = 0; corner < 3; ++corner) {
-                const auto& p = chunk.positions[t.vertices_material[corner]];
+                const auto& p = chunk.positions[t.vertices[corner]];
                 out[std::size_t(corner)] = {p[0], p[1], p[2]};
             }
         }

@@ -9,6 +9,8 @@
 #include "reference/exact_voxels.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/deform.h"
+#include "shaders/interop/surface.h"
 #include "tests/support/count_news.h"
 #include "tests/support/moving_fixture.h"
 #include "tests/support/moving_scenes.h"

@@ -8,6 +8,9 @@
 
 #include "base/error.h"
 #include "gl/handle.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
+#include "shaders/interop/voxelize.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "voxelizer/methods/raster_tiles.h"

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/scratch_folder.h"
 #include "voxelizer/files/write_npy.h"
@@ -129,11 +131,11 @@ TEST(BuildSurface, LinesAndPointsAreDegenerateTriangles) {
     mesh.primitive.topology = scenes::Topology::lines;
     Surface surface = mesh.surface(unit_grid(16));
     ASSERT_EQ(surface.triangle_count, 2U);
-    EXPECT_EQ(glm::uvec3(surface.chunks[0].triangles[0].vertices_material), glm::uvec3(0, 1, 1));
+    EXPECT_EQ(surface.chunks[0].triangles[0].vertices, glm::uvec3(0, 1, 1));
     mesh.primitive.topology = scenes::Topology::points;
     surface = mesh.surface(unit_grid(16));
     ASSERT_EQ(surface.triangle_count, 4U);
-    EXPECT_EQ(glm::uvec3(surface.chunks[0].triangles[3].vertices_material), glm::uvec3(2, 2, 2));
+    EXPECT_EQ(surface.chunks[0].triangles[3].vertices, glm::uvec3(2, 2, 2));
 }
 
 TEST(BuildSurface, LeavesOutWhatMissesTheCubeAndSetsFarTrianglesApart) {

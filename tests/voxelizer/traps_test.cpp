@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "scenes/load.h"
+#include "shaders/interop/surface.h"
+#include "shaders/interop/voxelize.h"
 #include "tests/support/gltf_file.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/test_scenes.h"

@@ -5,6 +5,8 @@
 #include "renderer/produce/tile_lists.h"
 #include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
 #include "tests/support/lattice_surface.h"
 
 namespace cairn::renderer {
@@ -56,7 +58,7 @@ std::vector<std::uint32_t> brute_force(const TreeShape& shape, const voxelizer::
             glm::i64vec3 from(INT64_MAX);
             glm::i64vec3 to(INT64_MIN);
             for (int corner = 0; corner < 3; ++corner) {
-                const auto& p = part.positions[part.triangles[i].vertices_material[corner]];
+                const auto& p = part.positions[part.triangles[i].vertices[corner]];
                 from = glm::min(from, glm::i64vec3(p[0], p[1], p[2]));
                 to = glm::max(to, glm::i64vec3(p[0], p[1], p[2]));
             }

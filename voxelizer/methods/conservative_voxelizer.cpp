@@ -10,7 +10,8 @@
 
 #include "base/error.h"
 #include "gl/limits.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/surface.h"
+#include "shaders/interop/voxelize.h"
 #include "voxelizer/surface/far_triangles.h"
 
 namespace cairn::voxelizer {

@@ -4,8 +4,9 @@
 
 #include <tbb/parallel_for.h>
 
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
+#include "shaders/interop/voxelize.h"
 #include "voxelizer/surface/exact_mask.h"
 
 namespace cairn::voxelizer {
@@ -109,7 +110,8 @@ std::vector<glm::ivec3> decide_on_cpu(const std::vector<MaskCandidate>& candidat
     const std::int64_t side = region.voxel_side();
     std::vector<char> is_surface(candidates.size());
     tbb::parallel_for(std::size_t(0), candidates.size(), [&](std::size_t i) {
-        const glm::uvec4& vertices = triangles[std::size_t(candidates[i].triangle)].vertices_material;
+        const interop::SurfaceTriangle& triangle = triangles[std::size_t(candidates[i].triangle)];
+        const glm::uvec3& vertices = triangle.vertices;
         std::array<glm::i64vec3, 3> corners;
         std::array<glm::vec2, 3> texcoords;
         std::array<std::uint32_t, 3> colors{};
@@ -119,7 +121,7 @@ std::vector<glm::ivec3> decide_on_cpu(const std::vector<MaskCandidate>& candidat
             texcoords[std::size_t(corner)] = attributes[vertices[corner]].texcoord;
             colors[std::size_t(corner)] = attributes[vertices[corner]].color;
         }
-        const ExactMask mask(corners, texcoords, colors, materials[vertices.w], texels);
+        const ExactMask mask(corners, texcoords, colors, materials[triangle.material], texels);
         is_surface[i] = mask.touches(glm::i64vec3(candidates[i].voxel) * side, side) ? 1 : 0;
     });
     std::vector<glm::ivec3> voxels;

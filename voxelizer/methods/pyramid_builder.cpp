@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/voxelize.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -38,9 +37,15 @@ BitGrid read_bits(const gl::Buffer& bits, const glm::ivec3& size) {
 }
 
 PyramidBuilder::PyramidBuilder(const gl::ShaderSource& shaders)
-    : halve_wide_(gl::build_compute(shaders, "voxelize/halve.comp.glsl", {{"WIDE", "1"}})),
-      halve_(gl::build_compute(shaders, "voxelize/halve.comp.glsl", {{"WIDE", "0"}})),
-      finest_(buffer_texture()) {}
+    : halve_([shaders](const HalveVariant& variant) {
+          return gl::build_compute(shaders, "voxelize/halve.comp.glsl",
+                                   {{"WIDE", variant.is_wide ? "1" : "0"}});
+      }),
+      finest_(buffer_texture()) {
+    // Now, so that no time that is measured has their compilation in it.
+    (void)halve_.get({.is_wide = true});
+    (void)halve_.get({.is_wide = false});
+}
 
 void PyramidBuilder::prepare(const glm::ivec3& size, Reduction reduction) {
     if (size == finest_size_ && reduction == reduction_) return;
@@ -60,7 +65,7 @@ void PyramidBuilder::prepare(const glm::ivec3& size, Reduction reduction) {
 }
 
 void PyramidBuilder::halve(const gl::TextureHandle& fine, const glm::ivec3& fine_size, const Level& coarse) {
-    const gl::Program& program = is_wide(fine_size) ? halve_wide_ : halve_;
+    const gl::Program& program = halve_.get({is_wide(fine_size)});
     glBindTextureUnit(TEXTURE_HALVE_FINE, fine.id());
     coarse.bits.bind_storage(SSBO_HALVE_COARSE);
     program.set("fine_size", fine_size);

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <compare>
 #include <vector>
 
 #include "gl/buffer.h"
-#include "gl/program.h"
+#include "gl/program_family.h"
 #include "gl/shader_source.h"
 #include "voxelizer/bit_grid.h"
 
@@ -32,8 +33,12 @@ private:
     void prepare(const glm::ivec3& size, Reduction reduction);
     void halve(const gl::TextureHandle& fine, const glm::ivec3& fine_size, const Level& coarse);
 
-    gl::Program halve_wide_;
-    gl::Program halve_;
+    /// What tells the programs that halve a level apart.
+    struct HalveVariant {
+        bool is_wide = false;  ///< rows are read four words at a time
+        [[nodiscard]] auto operator<=>(const HalveVariant&) const = default;
+    };
+    gl::ProgramFamily<HalveVariant> halve_;
     gl::TextureHandle finest_;   ///< of the buffer that the last call was given
     std::vector<Level> levels_;  ///< kept for the next pyramid of the same size and reduction
     glm::ivec3 finest_size_{0};

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "shaders/interop/config.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/voxelize.h"
 #include "voxelizer/methods/slice_targets.h"
 
 namespace cairn::voxelizer {

@@ -8,8 +8,7 @@
 
 #include "base/error.h"
 #include "gl/draw_state.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/far_clip.h"
 
 namespace cairn::voxelizer {
@@ -20,7 +19,7 @@ constexpr std::size_t list_words = 3 * std::size_t(VOXEL_BATCH_TRIANGLES);
 constexpr std::size_t all_list_words =
     RASTER_KINDS + RASTER_KINDS * (list_words + std::size_t(VOXEL_BATCH_TRIANGLES));
 
-unsigned corners_of(unsigned kind) {
+int corners_of(unsigned kind) {
     return kind == RASTER_SEGMENTS ? 2 : kind == RASTER_POINTS ? 1 : 3;
 }
 
@@ -50,6 +49,31 @@ int viewport_side(const glm::ivec2& plane) {
 
 }  // namespace
 
+gl::Defines defines(const RasterVariant& variant) {
+    return {{"CORNERS", std::to_string(variant.corners)},
+            {"COVER", variant.cover ? "1" : "0"},
+            {"AXES", std::to_string(variant.axes)},
+            {"MASKED", variant.masked ? "1" : "0"},
+            {"TARGETS", std::to_string(variant.targets)}};
+}
+
+std::vector<RasterVariant> valid_raster_variants() {
+    std::vector<RasterVariant> valid;
+    for (const bool masked : {false, true}) {
+        for (int targets = 1; targets <= RASTER_TARGETS; targets *= 2) {
+            for (const int corners : {3, 2, 1}) {
+                for (const int axes : {1, 3}) {
+                    valid.push_back({corners, false, axes, masked, targets});
+                    // Far triangles are enlarged by every method.
+                    if (corners == 3) valid.push_back({corners, true, axes, masked, targets});
+                }
+                valid.push_back({corners, true, 0, masked, targets});
+            }
+        }
+    }
+    return valid;
+}
+
 bool RasterVoxelizer::has_vertex_path() {
     GLint blocks = 0;
     glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &blocks);
@@ -64,6 +88,14 @@ RasterVoxelizer::RasterVoxelizer(Method method, const gl::ShaderSource& shaders,
       list_(gl::build_compute(shaders, "voxelize/list_primitives.comp.glsl")),
       unite_along_x_(gl::build_compute(shaders, "voxelize/unite_slices.comp.glsl", {{"ALONG_X", "1"}})),
       unite_(gl::build_compute(shaders, "voxelize/unite_slices.comp.glsl", {{"ALONG_X", "0"}})),
+      programs_([vertex_path = vertex_path_, shaders](const RasterVariant& variant) {
+          const gl::Defines macros = defines(variant);
+          return vertex_path
+                     ? gl::build_raster(shaders, "voxelize/project.vert.glsl", "voxelize/slice.frag.glsl", {},
+                                        macros)
+                     : gl::build_raster(shaders, "voxelize/feed.vert.glsl", "voxelize/slice.frag.glsl",
+                                        "voxelize/project.geom.glsl", macros);
+      }),
       lists_(all_list_words * sizeof(std::uint32_t), "primitives to rasterize") {
     GLuint vertex_array = 0;
     glCreateVertexArrays(1, &vertex_array);
@@ -77,19 +109,11 @@ RasterVoxelizer::RasterVoxelizer(Method method, const gl::ShaderSource& shaders,
 
 const gl::Program& RasterVoxelizer::program(unsigned kind, bool cover, bool masked) {
     const int targets = int(std::bit_ceil(unsigned(targets_.target_count())));
-    gl::Program& cached = programs_[{kind, cover, masked, targets}];
-    if (cached.id() != 0) return cached;
-    const int axes = is_conservative() ? 0 : directions();
-    const gl::Defines defines = {{"CORNERS", std::to_string(corners_of(kind))},
-                                 {"COVER", cover ? "1" : "0"},
-                                 {"AXES", std::to_string(axes)},
-                                 {"MASKED", masked ? "1" : "0"},
-                                 {"TARGETS", std::to_string(targets)}};
-    cached = vertex_path_ ? gl::build_raster(shaders(), "voxelize/project.vert.glsl",
-                                             "voxelize/slice.frag.glsl", {}, defines)
-                          : gl::build_raster(shaders(), "voxelize/feed.vert.glsl", "voxelize/slice.frag.glsl",
-                                             "voxelize/project.geom.glsl", defines);
-    return cached;
+    return programs_.get({.corners = corners_of(kind),
+                          .cover = cover,
+                          .axes = is_conservative() ? 0 : directions(),
+                          .masked = masked,
+                          .targets = targets});
 }
 
 void RasterVoxelizer::mark(const GpuSurface& surface, const Region& region, std::span<const ChunkPart> parts,

@@ -1,16 +1,16 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
-#include <tuple>
+#include <vector>
 
 #include "gl/handle.h"
-#include "gl/program.h"
-#include "shaders/interop/config.h"
+#include "gl/program_family.h"
+#include "shaders/interop/voxelize.h"
 #include "voxelizer/methods/raster_tiles.h"
 #include "voxelizer/methods/slice_targets.h"
 #include "voxelizer/methods/voxelizer.h"
@@ -22,6 +22,20 @@ enum class LayerPath : std::uint8_t {
     geometry_shader,  ///< OpenGL 4.5 alone
     vertex_shader     ///< ARB_shader_viewport_layer_array, and storage buffers in vertex shaders
 };
+
+/// What tells the programs that rasterize apart.
+struct RasterVariant {
+    int corners = 3;     ///< of a primitive: 3, 2 or 1
+    bool cover = false;  ///< primitives are enlarged to all pixels that they touch
+    int axes =
+        1;  ///< directions in which a primitive is drawn: 1 or 3; 0: the one that sees it most squarely
+    bool masked = false;  ///< alpha masks are looked at
+    int targets = 1;      ///< of the slices: 1, 2, 4 or 8
+    [[nodiscard]] auto operator<=>(const RasterVariant&) const = default;
+};
+[[nodiscard]] gl::Defines defines(const RasterVariant& variant);
+/// Every variant that a method of RasterVoxelizer may ask for.
+[[nodiscard]] std::vector<RasterVariant> valid_raster_variants();
 
 /// Voxelizes by rasterization into one bit a slice: the methods of Forest et al. 2009, section 2, to compare
 /// with. None of them is exact (`cairn check` counts how far off they are).
@@ -77,8 +91,8 @@ private:
     bool vertex_path_;
     gl::Program list_;
     gl::Program unite_along_x_;
-    gl::Program unite_;                                                      ///< along y and z
-    std::map<std::tuple<unsigned, bool, bool, int>, gl::Program> programs_;  ///< kind, cover, masked, targets
+    gl::Program unite_;  ///< along y and z
+    gl::ProgramFamily<RasterVariant> programs_;
     SliceTargets targets_;
     gl::Buffer lists_;
     gl::VertexArrayHandle vertex_array_;

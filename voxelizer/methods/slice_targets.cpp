@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/voxelize.h"
 
 namespace cairn::voxelizer {
 namespace {

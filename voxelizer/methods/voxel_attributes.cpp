@@ -10,8 +10,8 @@
 
 #include "base/error.h"
 #include "gl/limits.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/surface.h"
+#include "shaders/interop/voxelize.h"
 #include "voxelizer/methods/masked_marker.h"
 #include "voxelizer/methods/pyramid_builder.h"
 #include "voxelizer/surface/far_clip.h"

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/voxelize.h"
 #include "voxelizer/files/voxel_tiles.h"
 #include "voxelizer/methods/pyramid_builder.h"
 

@@ -10,6 +10,9 @@
 
 #include "base/error.h"
 #include "gl/limits.h"
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
+#include "shaders/interop/voxelize.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
 #include "voxelizer/methods/raster_voxelizer.h"
 

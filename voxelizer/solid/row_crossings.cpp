@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/error.h"
+#include "shaders/interop/grid.h"
 #include "voxelizer/solid/solid_triangles.h"
 #include "voxelizer/surface/crossed_rows.h"
 

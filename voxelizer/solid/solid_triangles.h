@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 #include <tbb/parallel_for.h>
 
-#include "shaders/interop/config.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::voxelizer {
@@ -21,8 +21,8 @@ void for_each_triangle(const Surface& surface, const Add& add) {
     };
     for (const SurfaceChunk& chunk : surface.chunks) {
         tbb::parallel_for(std::size_t(0), chunk.triangles.size(), [&](std::size_t i) {
-            const glm::uvec4& numbers = chunk.triangles[i].vertices_material;
-            if (is_cut(numbers.w)) return;
+            const glm::uvec3& numbers = chunk.triangles[i].vertices;
+            if (is_cut(chunk.triangles[i].material)) return;
             std::array<glm::i64vec3, 3> corners;
             for (int corner = 0; corner < 3; ++corner) {
                 const auto& p = chunk.positions[numbers[corner]];

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "scenes/scene.h"
-#include "shaders/interop/config.h"
 #include "voxelizer/surface/wide_integer.h"
 
 namespace cairn::voxelizer {

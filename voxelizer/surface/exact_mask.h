@@ -6,7 +6,7 @@
 
 #include <glm/glm.hpp>
 
-#include "shaders/interop/types.h"
+#include "shaders/interop/surface.h"
 
 namespace cairn::voxelizer {
 

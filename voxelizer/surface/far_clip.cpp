@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "shaders/interop/config.h"
+#include "shaders/interop/grid.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -67,7 +67,7 @@ SurfaceChunk clipped_to(std::span<const FarTriangle> triangles, const glm::dvec3
         for (const glm::dvec3& weights : polygon)
             add_vertex(triangle, weights, pieces);
         for (std::uint32_t i = 2; i < polygon.size(); ++i)
-            pieces.triangles.push_back({{first, first + i - 1, first + i, triangle.material}});
+            pieces.triangles.push_back({{first, first + i - 1, first + i}, triangle.material});
     }
     return pieces;
 }

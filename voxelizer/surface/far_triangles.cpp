@@ -6,7 +6,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include "shaders/interop/config.h"
 #include "voxelizer/surface/exact_mask.h"
 #include "voxelizer/surface/wide_integer.h"
 

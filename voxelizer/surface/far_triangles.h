@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "shaders/interop/surface.h"
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/grid.h"
 #include "voxelizer/surface/surface.h"

@@ -1,5 +1,5 @@
 #include "gl/limits.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface.h"
 #include "voxelizer/surface/upload_array.h"
 

@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "gl/limits.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
 #include "voxelizer/surface/upload_array.h"
 
 namespace cairn::voxelizer {

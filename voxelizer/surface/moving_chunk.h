@@ -7,8 +7,7 @@
 #include "gl/buffer.h"
 #include "scenes/pose.h"
 #include "scenes/snapshot.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/deform.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::voxelizer {

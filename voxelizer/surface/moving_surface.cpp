@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "gl/limits.h"
-#include "shaders/interop/bindings.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/deform.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/upload_array.h"
 
 namespace cairn::voxelizer {

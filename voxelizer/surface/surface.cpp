@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "scenes/transform.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/grid.h"
 #include "voxelizer/surface/surface_materials.h"
 
 namespace cairn::voxelizer {
@@ -134,7 +134,7 @@ private:
             for (const std::uint32_t vertex : item_vertices)
                 (void)number(vertex);
             part_.mesh.triangles.push_back(
-                {{number(vertices[0]), number(vertices[1]), number(vertices[2]), material}});
+                {{number(vertices[0]), number(vertices[1]), number(vertices[2])}, material});
         } else {
             part_.far_triangles.push_back(
                 {{a, b, c},
@@ -205,8 +205,8 @@ void append(Surface& surface, const SurfaceChunk& part) {
         for (; first < last; ++first) {
             interop::SurfaceTriangle triangle = part.triangles[first];
             // Numbered as in the part, so that a vertex's number does not depend on where the front is.
-            std::array<std::uint32_t, 3> in_order = {
-                triangle.vertices_material.x, triangle.vertices_material.y, triangle.vertices_material.z};
+            std::array<std::uint32_t, 3> in_order = {triangle.vertices.x, triangle.vertices.y,
+                                                     triangle.vertices.z};
             std::ranges::sort(in_order);
             for (const std::uint32_t vertex : in_order) {
                 std::int32_t& number = numbers[vertex];
@@ -218,7 +218,7 @@ void append(Surface& surface, const SurfaceChunk& part) {
                 }
             }
             for (int corner = 0; corner < 3; ++corner) {
-                std::uint32_t& vertex = triangle.vertices_material[corner];
+                std::uint32_t& vertex = triangle.vertices[corner];
                 vertex = std::uint32_t(numbers[vertex]);
             }
             chunk.triangles.push_back(triangle);

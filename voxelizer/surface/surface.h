@@ -8,7 +8,7 @@
 
 #include "gl/buffer.h"
 #include "scenes/snapshot.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/grid.h"
 
 namespace cairn::voxelizer {

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "base/error.h"
-#include "shaders/interop/config.h"
 
 namespace cairn::voxelizer {
 namespace {

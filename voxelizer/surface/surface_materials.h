@@ -8,7 +8,7 @@
 
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
-#include "shaders/interop/types.h"
+#include "shaders/interop/surface.h"
 
 namespace cairn::voxelizer {
 

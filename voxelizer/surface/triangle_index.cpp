@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
+
 namespace cairn::voxelizer {
 namespace {
 
@@ -34,9 +37,9 @@ TriangleIndex::TriangleIndex(const Surface& surface, const TriangleIndexOptions&
             return glm::ivec3(p[0], p[1], p[2]);
         };
         for (const interop::SurfaceTriangle& triangle : chunk.triangles) {
-            const glm::ivec3 a = corner(triangle.vertices_material.x);
-            const glm::ivec3 b = corner(triangle.vertices_material.y);
-            const glm::ivec3 c = corner(triangle.vertices_material.z);
+            const glm::ivec3 a = corner(triangle.vertices.x);
+            const glm::ivec3 b = corner(triangle.vertices.y);
+            const glm::ivec3 c = corner(triangle.vertices.z);
             root_.triangles.push_back(std::uint32_t(boxes_.size()));
             boxes_.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
         }

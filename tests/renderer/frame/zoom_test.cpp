@@ -9,6 +9,7 @@
 #include "renderer/march/windows.h"
 #include "renderer/produce/fractal_content.h"
 #include "renderer/renderer.h"
+#include "shaders/interop/windows.h"
 #include "tests/support/gl_fixture.h"
 
 namespace cairn::test {

@@ -15,7 +15,8 @@
 #include "renderer/renderer.h"
 #include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/tile_query.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/test_scenes.h"
@@ -103,13 +104,13 @@ struct Scenery {
           pool_(shape_, content_.channels(), 64U << 20U),
           tree_(shape_, pool_.slot_count(), 8U << 20U, content_.oracle().child_mask({})) {
         const auto side = float(shape_.resolution());
-        view_.eye = {0.4F * side, 0.6F * side, 1.6F * side, 0.004F};
-        view_.forward = {0.0F, 0.0F, -1.0F, 0.0F};
-        view_.right = {0.6F, 0.0F, 0.0F, 0.0F};
-        view_.up = {0.0F, 0.6F, 0.0F, 0.0F};
-        view_.light = {0.0F, 1.0F, 0.0F, 0.0F};
-        view_.size_shadow = {64, 64, 0, 0};
-        view_.band = {0, 64, 0, 0};
+        view_.eye = {0.4F * side, 0.6F * side, 1.6F * side};
+        view_.pixel_cone = 0.004F;
+        view_.forward = {0.0F, 0.0F, -1.0F};
+        view_.right = {0.6F, 0.0F, 0.0F};
+        view_.up = {0.0F, 0.6F, 0.0F};
+        view_.light = {0.0F, 1.0F, 0.0F};
+        view_.width = view_.height = view_.row_count = 64;
     }
     [[nodiscard]] voxelizer::Surface surface() const {
         const scenes::Scene scene = ball_over_floor();

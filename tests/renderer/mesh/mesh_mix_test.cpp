@@ -8,7 +8,7 @@
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
 #include "scenes/builtin/builtin.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/mesh.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_mix_pictures.h"
 #include "tests/support/mesh_rays.h"

@@ -8,7 +8,6 @@
 
 #include "reference/image.h"
 #include "scenes/builtin/builtin.h"
-#include "shaders/interop/config.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_mix_pictures.h"
 #include "tests/support/mesh_rays.h"

@@ -11,7 +11,8 @@
 #include "reference/image.h"
 #include "scenes/builtin/builtin.h"
 #include "scenes/load.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/march.h"
+#include "shaders/interop/mesh.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_rays.h"
 #include "tests/support/test_scenes.h"
@@ -34,11 +35,13 @@ interop::MarchView march_view(const View& view, const MarchSpace& space, double 
     const double half = std::tan(0.5 * view.camera.yfov);
     interop::MarchView out{};
     const glm::dvec3 eye = (view.camera.eye - space.origin) / space.unit;
-    out.eye = glm::vec4(glm::vec3(eye + forward * skipped), 0.0F);
-    out.forward = glm::vec4(glm::vec3(forward), float(skipped));
-    out.right = glm::vec4(glm::vec3(right * (half * view.width / view.height)), 0.0F);
-    out.up = glm::vec4(glm::vec3(up * half), 0.0F);
-    out.size_shadow = glm::ivec4(view.width, view.height, 0, 0);
+    out.eye = glm::vec3(eye + forward * skipped);
+    out.forward = glm::vec3(forward);
+    out.skipped = float(skipped);
+    out.right = glm::vec3(right * (half * view.width / view.height));
+    out.up = glm::vec3(up * half);
+    out.width = view.width;
+    out.height = view.height;
     return out;
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/pool/tree.h"
+#include "shaders/interop/pool.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/tree_view.h"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/pool.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/tree_view.h"
 

@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "shaders/interop/bindings.h"
+#include "shaders/interop/pool.h"
+#include "shaders/interop/surface.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/produced_brick.h"
@@ -96,7 +97,7 @@ protected:
         for (voxelizer::SurfaceChunk& chunk : out.chunks) {
             chunk.attributes.assign(chunk.positions.size(), {0, 0xFFFFFFFFU, glm::vec2(0.0F)});
             for (interop::SurfaceTriangle& triangle : chunk.triangles)
-                triangle.vertices_material.w = std::uint32_t(random.between(0, 1));
+                triangle.material = std::uint32_t(random.between(0, 1));
         }
         out.has_color = GetParam().has_color;
         out.materials.assign(2, {});

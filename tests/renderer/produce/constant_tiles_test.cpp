@@ -8,6 +8,7 @@
 
 #include "renderer/pool/tree.h"
 #include "renderer/renderer.h"
+#include "shaders/interop/pool.h"
 #include "tests/support/box_content.h"
 #include "tests/support/gl_fixture.h"
 

@@ -4,6 +4,7 @@
 
 #include "renderer/produce/surface_oracle.h"
 #include "renderer/produce/tile_lists.h"
+#include "shaders/interop/grid.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "voxelizer/methods/conservative_voxelizer.h"

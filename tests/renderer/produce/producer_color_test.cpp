@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "shaders/interop/surface.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/produced_brick.h"
@@ -78,7 +79,7 @@ private:
         return std::uint32_t(chunk.positions.size()) - 1;
     }
     void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-        surface_.chunks[0].triangles.push_back({{a, b, c, std::uint32_t(surface_.materials.size()) - 1}});
+        surface_.chunks[0].triangles.push_back({{a, b, c}, std::uint32_t(surface_.materials.size()) - 1});
     }
 
     voxelizer::Surface surface_;

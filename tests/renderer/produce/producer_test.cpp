@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/produced_brick.h"
@@ -47,7 +49,7 @@ voxelizer::Surface random_surface(int count, bool has_color, std::uint32_t seed)
     surface.materials = {colored({1.0F, 1.0F, 1.0F}), colored({0.5F, 0.1F, 0.9F}),
                          colored({0.0F, 0.7F, 0.2F})};
     for (interop::SurfaceTriangle& triangle : surface.chunks[0].triangles)
-        triangle.vertices_material.w = std::uint32_t(random.between(0, 2));
+        triangle.material = std::uint32_t(random.between(0, 2));
     return surface;
 }
 

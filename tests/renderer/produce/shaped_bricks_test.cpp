@@ -5,6 +5,7 @@
 
 #include "renderer/produce/surface_oracle.h"
 #include "renderer/produce/tile_lists.h"
+#include "shaders/interop/pool.h"
 #include "tests/support/clipped_triangle.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "reference/area_light.h"
-#include "shaders/interop/config.h"
+#include "shaders/interop/shadow_map.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/soft_shadow_scene.h"
 #include "tests/support/soft_shadow_twin.h"

@@ -1,0 +1,70 @@
+// The surface: triangles, their attributes and materials, as voxelize/, produce/ and mesh/ read them.
+#ifndef CAIRN_INTEROP_SURFACE_H
+#define CAIRN_INTEROP_SURFACE_H
+
+#ifdef __cplusplus
+#include "shaders/interop/vectors.h"
+#endif
+
+#define SSBO_SURFACE_POSITIONS 0   // int[3] per vertex, lattice units
+#define SSBO_SURFACE_TRIANGLES 1   // SurfaceTriangle
+#define SSBO_SURFACE_ATTRIBUTES 2  // SurfaceAttributes per vertex
+#define SSBO_SURFACE_MATERIALS 3   // SurfaceMaterial
+#define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each; then the counts of masks
+#define ATTRIBUTE_POSITION 0       // a vertex's position, where the surface is rasterized
+
+// A surface is cut in chunks of at most this many triangles, so that each of its buffers stays under the
+// smallest shader-storage limit in use (128 MiB). A triangle's global number is chunk *
+// SURFACE_CHUNK_TRIANGLES + local.
+#define SURFACE_CHUNK_TRIANGLES 2097152
+
+// Texture coordinates are rounded to 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a
+// texel when an alpha mask is read (shaders/voxelize/alpha_mask.glsl, voxelizer/surface/exact_mask.h).
+#define TEXCOORD_UNITS 67108864.0
+#define TEXCOORD_LIMIT 1048576.0
+#define TEXEL_UNITS 256
+#define TEXEL_COORDINATE_LIMIT 33554432.0
+
+// Bits of SurfaceMaterial.flags
+#define MATERIAL_WRAP_S_SHIFT 0  // 2 bits: 0 repeat, 1 mirrored repeat, 2 clamp to edge
+#define MATERIAL_WRAP_T_SHIFT 2
+#define MATERIAL_MASK_BIT 16     // alpha-masked: texels under the cutoff are holes
+
+#ifdef __cplusplus
+namespace cairn::interop {
+#endif
+
+// A segment is (a, b, b), a point (a, a, a).
+struct SurfaceTriangle {
+    uvec3 vertices;  // numbers into the chunk's positions and attributes
+    uint material;
+};
+
+struct SurfaceAttributes {
+    uint normal;    // octahedral, snorm 16 + 16; 0 = none: use the triangle's own
+    uint color;     // RGBA8, linear, 255 = 1
+    vec2 texcoord;  // in the texture's space (after KHR_texture_transform)
+};
+
+struct SurfaceMaterial {
+    vec4 base_color;      // linear
+    uint texel_offset;    // first texel in SSBO_SURFACE_TEXELS
+    uint width;           // 0 = no texture
+    uint height;
+    uint flags;           // MATERIAL_*
+    float alpha_cutoff;
+    uint alpha_threshold;  // passes: texel alpha * vertex alpha * 256 >= this, both alphas 0 to 255
+    // Masked and textured: first number in SSBO_SURFACE_TEXELS of (width + 1) * (height + 1). Number (x, y)
+    // counts the passing texels left of x and above y, for vertex alpha 255.
+    uint passing_offset;
+    uint padding;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(SurfaceTriangle) == 16, "GLSL sees another layout");
+static_assert(sizeof(SurfaceAttributes) == 16, "GLSL sees another layout");
+static_assert(sizeof(SurfaceMaterial) == 48, "GLSL sees another layout");
+}  // namespace cairn::interop
+#endif
+
+#endif

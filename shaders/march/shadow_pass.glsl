@@ -1,0 +1,79 @@
+// One pass of shadow rays that march: a thread takes up a pixel that waits, sends its rays on, and leaves it
+// to the next pass where one of them must wait again.
+#include "interop/march.h"
+#define GROUP_SIZE 64
+#include "common/thread.glsl"
+#include "march/shadow_rays.glsl"
+
+uniform uint ray_count;
+uniform uint list_in;  // words in lists[]
+uniform uint list_out;
+
+RayState state;  // of the thread's pixel
+
+struct WaitingPixel {
+    uint index;    // of its state
+    ivec2 pixel;   // in the band
+    bool starts;   // no shadow ray has been sent yet
+};
+
+// False when the thread has no pixel.
+bool take_up(out WaitingPixel waiting) {
+    const uint i = thread_index();
+    waiting = WaitingPixel(0u, ivec2(0), true);
+    if (i >= ray_count) return false;
+    const uint index = lists[list_in + i];
+    state = rays[index];
+    waiting = WaitingPixel(index, pixel_at(index), !has_started(state));
+#if WINDOWS
+    seen_window = stored_seen_window(state);
+#endif
+    return true;
+}
+
+void leave_waiting(uint index) {
+    rays[index] = state;
+    lists[list_out + atomicAdd(counters.waiting_shadow, 1u)] = index;
+}
+
+// march() counts the turns, and pauses within a ray.
+bool pauses_before_ray() { return false; }
+
+// Brings a ray from its start at distance `t_start`, or from where it stood, to the light. False when it must
+// wait: then it is stored.
+bool march_to_light(Ray ray, float t_start, bool starts) {
+    bool inside = true;
+    if (starts) {
+        visibility = 1.0;
+        ray.t = t_start;
+        inside = enter_windows(ray);
+    } else {
+        load_position(ray, state);
+        visibility = state.weight;
+    }
+    if (inside && march(ray, shadow_turns) == MARCH_MISSING) {
+        store_position(state, ray);
+        state.weight = visibility;
+        return false;
+    }
+    return true;
+}
+
+// Nothing, where a ray would have stopped.
+float clear_opaque(float left) { return left > OPAQUE_TRANSMITTANCE ? left : 0.0; }
+
+// Side of the voxels that a cone of this width is shown with (descend()); of the finer ones, when two mips
+// are blended.
+float side_shown(float width) {
+    int shift = ROOT_SHIFT - M_SHIFT;
+    for (int level = 0; level < MAX_LEVEL && float(cell_side(shift)) > width; ++level) shift -= N_SHIFT;
+#if BLENDED
+    shift += blended_mip(shift, width);
+#endif
+    return float(cell_side(shift));
+}
+
+// Width of the shadow rays that start at a depth of a pixel's ray.
+float width_at(PixelRay seen, float depth) {
+    return view.shadow_cone_scale * view.pixel_cone * (seen.skipped + depth);
+}

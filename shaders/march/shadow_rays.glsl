@@ -1,0 +1,88 @@
+// The shadow rays of a pixel: one to the middle of the light, or with SOFT_SHADOWS some to samples of it, of
+// which the one that had to wait and those behind it go on in the next pass. Sums go from pass to pass by
+// shadow_sums[].
+//
+// The includer supplies `receiver`, where the rays start, and four functions:
+//     bool pauses_before_ray()
+//         has the thread done enough in this pass?
+//     bool trace_one(LightSample there, bool starts)
+//         one ray, from its start or on from where it stood; leaves what it has of the light in `visibility`.
+//         False when it must wait.
+//     float weight_of(inout LightSample there)
+//         the share of a sample that can light the receiver at all, by how the surface is turned; it may move
+//         the sample. 0: no ray is sent.
+//     float end_of_occluders(vec3 to_light)
+//         the distance behind which nothing stands before a directional light
+// Needs the defines SOFT_SHADOWS and SHADOW_CONES, and shade.glsl.
+#include "interop/shadow_rays.h"
+
+struct LightSample {
+    vec3 direction;  // from the receiver, unit
+    float reach;     // how far it is
+    float width;     // of its share of the light, at distance 1
+};
+
+bool pauses_before_ray();
+bool trace_one(LightSample there, bool starts);
+float weight_of(inout LightSample there);
+float end_of_occluders(vec3 to_light);
+
+#if SHADOW_CONES
+layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { ShadowConeSum shadow_sums[]; };
+#else
+layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { ShadowSum shadow_sums[]; };
+#endif
+
+float visibility;      // what the ray at hand has been left of the light; in the end, what all of them have
+int shadow_turns = 0;  // loop turns that the thread has taken in this pass
+
+#if SOFT_SHADOWS
+#include "march/area_light.glsl"
+
+#if SHADOW_CONES
+void store_sum(uint index, uint ray, float visible) {
+    shadow_sums[index] = ShadowConeSum(ray, visible, front_sum, back_sum);
+}
+#else
+void store_sum(uint index, uint ray, float visible) { shadow_sums[index] = ShadowSum(ray, visible); }
+#endif
+
+// How much of the light reaches the receiver, in `visibility`. False when a ray must wait.
+bool find_light(ivec2 pixel, uint index, bool starts) {
+    const uint sample_count = uint(min(view.shadow_rays, MAX_SHADOW_RAYS));
+    uint first = 0u;
+    float sum = 0.0;
+    if (!starts) {
+        first = shadow_sums[index].ray;
+        sum = shadow_sums[index].visible;
+    }
+    for (uint i = first; i < sample_count; ++i) {
+        if (pauses_before_ray()) {
+            store_sum(index, i, sum);
+            return false;
+        }
+        LightSample there = light_sample(receiver, pixel, i);
+        const bool resumes = !starts && i == first;
+#if SHADOW_CONES
+        front_sum = resumes ? shadow_sums[index].front : 0.0;
+        back_sum = resumes ? shadow_sums[index].back : 0.0;
+#endif
+        const float weight = weight_of(there);
+        if (weight <= 0.0) continue;
+        if (!trace_one(there, !resumes)) {
+            store_sum(index, i, sum);
+            return false;
+        }
+        sum += weight * visibility;
+    }
+    visibility = sum / float(sample_count);
+    return true;
+}
+#else
+bool find_light(ivec2 pixel, uint index, bool starts) {
+    const LightPlace light = light_there();
+    const vec3 to_light = direction_to_light(receiver);
+    const float reach = light.is_positional ? distance(light.at, receiver) : end_of_occluders(to_light);
+    return trace_one(LightSample(to_light, reach, 0.0), starts);
+}
+#endif
