@@ -1,20 +1,15 @@
-# Installs the command, the libraries with their headers, and what find_package(cairn) reads.
+# Installs the command, the libraries, and what find_package(cairn) reads. Headers: cmake/PublicHeaders.cmake.
 include(CMakePackageConfigHelpers)
 
 set(cairn_config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/cairn")
 get_property(cairn_libraries GLOBAL PROPERTY CAIRN_LIBRARIES)
-get_property(glad_includes GLOBAL PROPERTY CAIRN_GLAD_INCLUDES)
 
-install(TARGETS cairn_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(CAIRN_APP)
+  install(TARGETS cairn_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 install(TARGETS ${cairn_libraries} EXPORT cairnTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT cairnTargets NAMESPACE cairn:: DESTINATION ${cairn_config_dir})
 
-# Headers lie as they are included: "voxelizer/grid.h" in include/cairn/voxelizer/grid.h.
-install(DIRECTORY base gl optics scenes voxelizer renderer reference
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cairn
-        FILES_MATCHING PATTERN "*.h" PATTERN "scenes/gltf" EXCLUDE)
-install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cairn/shaders FILES_MATCHING PATTERN "*.h")
-install(DIRECTORY ${glad_includes} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cairn)
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # A static library needs at its user's place all that it links, private or not. So the packages to find there follow

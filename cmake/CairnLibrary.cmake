@@ -1,19 +1,45 @@
 # cairn_library(NAME SOURCES a.cpp b.h ... [PUBLIC targets ...] [PRIVATE targets ...])
 #
 # One static library a folder: cairn_NAME, called cairn::NAME by those who link it.
-# Headers are included from the project's root ("voxelizer/grid.h"), here and after installation alike.
+# The project's own sources include headers from its root ("voxelizer/grid.h"). Who links a library sees the public ones
+# alone, as <cairn/voxelizer/grid.h>, from a build tree and from an installed prefix alike (cmake/PublicHeaders.cmake).
+#
+# cairn_options(TARGET): what every target of the project compiles with.
 function(cairn_options target)
+  target_include_directories(${target} BEFORE PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
   # The lattice of the voxelizer is defined by IEEE operations done one by one: a fused multiply-add rounds otherwise.
   target_compile_options(${target} PRIVATE -ffp-contract=off)
-  if(CAIRN_SANITIZE)
-    target_compile_options(${target} PUBLIC -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
-    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
-    get_target_property(type ${target} TYPE)
-    if(type STREQUAL "EXECUTABLE")
-      target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/sanitizer_defaults.cpp)
-      target_link_libraries(${target} PRIVATE ${CMAKE_DL_LIBS})
-    endif()
+  if(CAIRN_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(CAIRN_COVERAGE)
+    target_compile_options(${target} PUBLIC --coverage -fprofile-update=atomic)
+    target_link_options(${target} PUBLIC --coverage)
+  endif()
+  if(CAIRN_FUZZ)
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+  cairn_sanitize(${target})
+endfunction()
+
+function(cairn_sanitize target)
+  if(CAIRN_SANITIZE STREQUAL "")
+    return()
+  elseif(CAIRN_SANITIZE STREQUAL "address")
+    set(sanitizers -fsanitize=address,undefined)
+    target_compile_options(${target} PUBLIC -fno-sanitize-recover=undefined)
+  elseif(CAIRN_SANITIZE STREQUAL "thread")
+    set(sanitizers -fsanitize=thread)
+  else()
+    message(FATAL_ERROR "CAIRN_SANITIZE is \"${CAIRN_SANITIZE}\": it may be empty, address or thread")
+  endif()
+  target_compile_options(${target} PUBLIC ${sanitizers} -fno-omit-frame-pointer)
+  target_link_options(${target} PUBLIC ${sanitizers})
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "EXECUTABLE")
+    target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/sanitizer_defaults.cpp)
+    target_link_libraries(${target} PRIVATE ${CMAKE_DL_LIBS})
   endif()
 endfunction()
 
@@ -25,8 +51,9 @@ function(cairn_library name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/cairn>)
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  add_dependencies(${target} cairn_headers)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   cairn_options(${target})
   set_property(GLOBAL APPEND PROPERTY CAIRN_LIBRARIES ${target})

@@ -1,6 +1,7 @@
 #include "gl/buffer.h"
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 
 #include "base/error.h"
 
@@ -42,6 +43,14 @@ void Buffer::fill(std::size_t offset_bytes, std::size_t size_bytes, std::uint32_
     if (size_bytes == 0) return;
     glClearNamedBufferSubData(id(), GL_R32UI, GLintptr(offset_bytes), GLsizeiptr(size_bytes), GL_RED_INTEGER,
                               GL_UNSIGNED_INT, &word);
+}
+
+void Buffer::bind_storage(std::uint32_t binding) const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id());
+}
+
+void Buffer::bind_uniform(std::uint32_t binding) const {
+    glBindBufferBase(GL_UNIFORM_BUFFER, binding, id());
 }
 
 }  // namespace cairn::gl

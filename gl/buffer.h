@@ -42,10 +42,10 @@ public:
         return values;
     }
 
-    void bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id()); }
-    void bind_uniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, id()); }
+    void bind_storage(std::uint32_t binding) const;
+    void bind_uniform(std::uint32_t binding) const;
 
-    [[nodiscard]] GLuint id() const { return handle_.id(); }
+    [[nodiscard]] std::uint32_t id() const { return handle_.id(); }
     [[nodiscard]] std::size_t size_bytes() const { return size_bytes_; }
 
 private:

@@ -49,17 +49,26 @@ std::unique_ptr<Context> create_automatic(bool debug) {
                 "install Mesa's software driver (Debian: libosmesa6, or libegl1 and libgl1-mesa-dri)");
 }
 
+class AdoptedContext final : public Context {
+public:
+    explicit AdoptedContext(void* (*get_proc_address)(const char*)) {
+        load_functions(get_proc_address, false);
+    }
+    void make_current() override {}
+    [[nodiscard]] std::string_view backend() const override { return "adopted"; }
+};
+
 }  // namespace
 
 void Context::load_functions(void* (*get_proc_address)(const char*), bool debug) {
     const int version = gladLoadGL(reinterpret_cast<GLADloadfunc>(get_proc_address));
     if (version == 0)
         throw Error(Fault::context, std::string(backend()), "the driver gives no OpenGL functions",
-                    "update the driver, or choose another --context");
+                    "update the driver, or choose another ContextOptions::kind");
     if (version < GLAD_MAKE_VERSION(4, 5)) {
         throw Error(Fault::context, fmt::format("driver \"{}\"", text_of(GL_RENDERER)),
                     fmt::format("OpenGL 4.5 core is needed, it offers {}", text_of(GL_VERSION)),
-                    "update the driver, or choose another --context");
+                    "update the driver, or choose another ContextOptions::kind");
     }
     if (debug) debug_log_->attach();
 }
@@ -74,6 +83,10 @@ std::unique_ptr<Context> create_context(const ContextOptions& options) {
             break;
     }
     return create_automatic(options.debug);
+}
+
+std::unique_ptr<Context> adopt_context(void* (*get_proc_address)(const char*)) {
+    return std::make_unique<AdoptedContext>(get_proc_address);
 }
 
 std::string driver_name() {

@@ -10,14 +10,16 @@
 namespace cairn::gl {
 
 enum class ContextKind {
-    automatic,  ///< EGL where it offers hardware, else OSMesa, else EGL's software driver
-    osmesa,     ///< Mesa's off-screen software rasterizer
-    egl,        ///< no window: a device, or Mesa's surfaceless platform
+    /// EGL where it offers hardware, else OSMesa, else EGL's software driver.
+    automatic,
+    osmesa,  ///< Mesa's off-screen software rasterizer
+    egl,     ///< no window: a device, or Mesa's surfaceless platform
 };
 
 struct ContextOptions {
     ContextKind kind = ContextKind::automatic;
-    bool debug = false;  ///< KHR_debug on: `Context::debug_log` gathers errors and undefined behaviour
+    /// KHR_debug on: `Context::debug_log` gathers errors and undefined behaviour.
+    bool debug = false;
 };
 
 /// An OpenGL 4.5 core context with no window. Current on the thread that made it until it is destroyed.
@@ -33,7 +35,7 @@ public:
 
     virtual void make_current() = 0;
 
-    /// "osmesa", "egl", "glfw".
+    /// "osmesa", "egl", "glfw", "adopted".
     [[nodiscard]] virtual std::string_view backend() const = 0;
     [[nodiscard]] DebugLog& debug_log() { return *debug_log_; }
 
@@ -49,6 +51,18 @@ private:
 /// @throws Error  Fault::context: nothing offers OpenGL 4.5; the message says what was tried and what each
 /// offers.
 [[nodiscard]] std::unique_ptr<Context> create_context(const ContextOptions& options = {});
+
+/// For a program that has a context already: loads the OpenGL functions for the context that is current,
+/// which must outlive all that is made while it is current. It stays the caller's: Context::make_current()
+/// does nothing, and the end of the object leaves it as it is. One context at a time.
+///
+/// Rendering and voxelizing leave the caller's framebuffer, viewport, blending, tests and vertex array as
+/// they were (gl/draw_state.h has the list). They change the current program, the buffers bound to indexed
+/// targets, and what is bound to texture and image units: a caller binds its own again, as it does for each
+/// of its passes.
+/// @param get_proc_address  of the window system: glfwGetProcAddress, eglGetProcAddress, ...
+/// @throws Error  Fault::context: the current context is older than OpenGL 4.5, or there is none.
+[[nodiscard]] std::unique_ptr<Context> adopt_context(void* (*get_proc_address)(const char*));
 
 /// GL_RENDERER and the version of the current context: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 (Core
 /// Profile) Mesa 22.3.6".

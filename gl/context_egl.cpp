@@ -98,7 +98,7 @@ public:
 private:
     [[noreturn]] void refuse(const char* what) const {
         throw Error(Fault::context, "EGL", fmt::format("{} (error {:#x})", what, egl_.get_error()),
-                    "choose --context osmesa");
+                    "choose ContextOptions::kind osmesa");
     }
 
     void create(bool debug) {
@@ -150,7 +150,7 @@ std::unique_ptr<Context> create_egl_context(bool debug) {
     // Contexts are made one at a time: two of one driver at once would share the function pointers.
     if (software_display != EGL_NO_DISPLAY) return std::make_unique<EglContext>(egl, software_display, debug);
     throw Error(Fault::context, "EGL", "no display without a window offers OpenGL 4.5 core" + tried,
-                "choose --context osmesa (software)");
+                "choose ContextOptions::kind osmesa (software)");
 }
 
 }  // namespace cairn::gl

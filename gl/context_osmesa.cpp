@@ -31,7 +31,7 @@ public:
         if (context_ == nullptr) context_ = create(any.data(), nullptr);
         if (context_ == nullptr) {
             throw Error(Fault::context, "OSMesa", "it offers no OpenGL 4.5 core context",
-                        "install Mesa 17 or later, or choose --context egl");
+                        "install Mesa 17 or later, or choose ContextOptions::kind egl");
         }
         try {
             OsmesaContext::make_current();
@@ -54,7 +54,7 @@ public:
         const auto make = library_.function<OSMesaMakeCurrentFn*>("OSMesaMakeCurrent");
         if (make(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE) {
             throw Error(Fault::context, "OSMesa", "the context cannot be made current",
-                        "choose --context egl");
+                        "choose ContextOptions::kind egl");
         }
     }
     [[nodiscard]] std::string_view backend() const override { return "osmesa"; }

@@ -19,7 +19,7 @@ public:
             if (handle_ != nullptr) return;
         }
         throw Error(Fault::context, *names.begin(), "the library is not installed",
-                    "install it (Debian: " + package + ") or choose another --context");
+                    "install it (Debian: " + package + ") or choose another ContextOptions::kind");
     }
 
     /// @throws Error when the library has no such function.
@@ -28,7 +28,7 @@ public:
         void* const address = dlsym(handle_, name);
         if (address == nullptr) {
             throw Error(Fault::context, name, "missing in the installed library",
-                        "update the library, or choose another --context");
+                        "update the library, or choose another ContextOptions::kind");
         }
         return reinterpret_cast<Function>(address);
     }

@@ -1,17 +1,17 @@
 #pragma once
 
+#include <cstdint>
 #include <utility>
-
-#include <glad/gl.h>
 
 namespace cairn::gl {
 
-/// Owns one OpenGL name; 0 owns nothing. Destroy it while its context is current.
-template <void (*Delete)(GLuint)>
+/// Owns one OpenGL name (a GLuint, which is an std::uint32_t); 0 owns nothing. Destroy it while its context
+/// is current.
+template <void (*Delete)(std::uint32_t)>
 class Handle {
 public:
     Handle() = default;
-    explicit Handle(GLuint id) : id_(id) {}
+    explicit Handle(std::uint32_t id) : id_(id) {}
     Handle(const Handle&) = delete;
     Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
     Handle& operator=(const Handle&) = delete;
@@ -23,35 +23,21 @@ public:
     ~Handle() {
         if (id_ != 0) Delete(id_);
     }
-    [[nodiscard]] GLuint id() const { return id_; }
+    [[nodiscard]] std::uint32_t id() const { return id_; }
     explicit operator bool() const { return id_ != 0; }
 
 private:
-    GLuint id_ = 0;
+    std::uint32_t id_ = 0;
 };
 
 namespace detail {
-inline void delete_buffer(GLuint id) {
-    glDeleteBuffers(1, &id);
-}
-inline void delete_framebuffer(GLuint id) {
-    glDeleteFramebuffers(1, &id);
-}
-inline void delete_program(GLuint id) {
-    glDeleteProgram(id);
-}
-inline void delete_query(GLuint id) {
-    glDeleteQueries(1, &id);
-}
-inline void delete_shader(GLuint id) {
-    glDeleteShader(id);
-}
-inline void delete_texture(GLuint id) {
-    glDeleteTextures(1, &id);
-}
-inline void delete_vertex_array(GLuint id) {
-    glDeleteVertexArrays(1, &id);
-}
+void delete_buffer(std::uint32_t id);
+void delete_framebuffer(std::uint32_t id);
+void delete_program(std::uint32_t id);
+void delete_query(std::uint32_t id);
+void delete_shader(std::uint32_t id);
+void delete_texture(std::uint32_t id);
+void delete_vertex_array(std::uint32_t id);
 }  // namespace detail
 
 using BufferHandle = Handle<detail::delete_buffer>;

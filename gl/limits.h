@@ -6,9 +6,9 @@ namespace cairn::gl {
 
 /// What the current driver can hold.
 struct Limits {
-    std::size_t shader_storage_bytes = 0;  ///< one shader storage block
+    std::size_t shader_storage_bytes = 0;  ///< size of one shader storage block
     std::size_t texture_buffer_texels = 0;
-    int texture_3d_size = 0;  ///< texels a side
+    int texture_3d_size = 0;  ///< texels along each side
 };
 
 [[nodiscard]] Limits query_limits();

@@ -55,7 +55,7 @@ ShaderHandle compile(GLenum stage, const ShaderSource& source, std::string_view 
     log.resize(log.find('\0') == std::string::npos ? log.size() : log.find('\0'));
     throw Error(Fault::context, fmt::format("shader {}", name),
                 fmt::format("did not compile on \"{}\"{}", driver_name(), with_file_names(log, resolved)),
-                "update the driver, or choose another --context");
+                "update the driver, or choose another ContextOptions::kind");
 }
 
 Program link(std::initializer_list<const ShaderHandle*> shaders, std::string_view name) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include <glad/gl.h>
 #include <glm/glm.hpp>
 
 #include "gl/handle.h"

@@ -1,5 +1,7 @@
 #include "gl/timer.h"
 
+#include <glad/gl.h>
+
 namespace cairn::gl {
 namespace {
 

@@ -15,7 +15,7 @@ namespace {
     glfwGetError(&detail);
     throw Error(Fault::context, "GLFW",
                 std::string(what) + (detail != nullptr ? std::string(": ") + detail : ""),
-                "without a display use cairn render, which needs no window");
+                "without a display use create_context(), which needs no window");
 }
 
 class GlfwWindow final : public Window {

@@ -18,8 +18,8 @@ struct Image {
 struct LightShares {
     int width = 0;
     int height = 0;
-    std::vector<float>
-        shares;  ///< [0, 1], row 0 at the top; 0 where the surface turns its back; -1: nothing there
+    /// In [0, 1], row 0 at the top; 0 where the surface turns its back to the light; -1: nothing is there.
+    std::vector<float> shares;
 };
 
 }  // namespace cairn::optics

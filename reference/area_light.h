@@ -13,7 +13,7 @@ namespace cairn::reference {
 
 struct AreaLightOptions {
     double standard_error = 1.0 / 512;  ///< sampling of a point stops below it
-    int least_samples = 256;            ///< of every point, however clear it looks
+    int least_samples = 256;            ///< samples of every point, however clear it looks
     int most_samples = 65536;           ///< sampling of a point stops here in any case
     std::uint64_t seed = 1;
     int threads = 0;  ///< 0 = all cores; the result does not depend on it
@@ -25,7 +25,7 @@ struct AreaLightOptions {
 
 struct LightVisibility {
     double visible = 1.0;         ///< share of the light that the point sees, in [0, 1]
-    double standard_error = 0.0;  ///< of `visible`, estimated from the samples
+    double standard_error = 0.0;  ///< standard error of `visible`, estimated from the samples
     int samples = 0;
 };
 
@@ -37,12 +37,11 @@ struct LightVisibility {
 /// the standard error. An occluder that hides much less than 1 / least_samples of the light may be missed.
 ///
 /// @param points   world.
-/// @param normals  one a point: what lies below its tangent plane is not seen; 0 = a point that has none; or
+/// @param normals  one per point: what lies below the tangent plane is not seen. 0: the point has no normal;
 ///                 empty: no point has one.
 /// @param light    with an extent.
 /// @throws Error  Fault::usage for a light without an extent, a point inside a sphere light, sample counts or
-/// a
-///                standard error that are not positive, or normals of another count than points.
+///                a standard error that are not positive, or normals of another count than points.
 [[nodiscard]] std::vector<LightVisibility> area_light_visibility(const ImageTracer& tracer,
                                                                  std::span<const glm::dvec3> points,
                                                                  std::span<const glm::dvec3> normals,

@@ -192,19 +192,19 @@ private:
 
 }  // namespace
 
-struct ExactVoxels::Parts {
-    explicit Parts(const Surface& surface) : triangles(surface), candidates(triangles) {}
+struct ExactVoxels::Impl {
+    explicit Impl(const Surface& surface) : triangles(surface), candidates(triangles) {}
 
     Triangles triangles;
     Candidates candidates;
 };
 
-ExactVoxels::ExactVoxels(const Surface& surface) : parts_(std::make_unique<Parts>(surface)) {}
+ExactVoxels::ExactVoxels(const Surface& surface) : impl_(std::make_unique<Impl>(surface)) {}
 ExactVoxels::~ExactVoxels() = default;
 
 BitGrid ExactVoxels::in(const Region& region) const {
-    const Triangles& triangles = parts_->triangles;
-    const Candidates& candidates = parts_->candidates;
+    const Triangles& triangles = impl_->triangles;
+    const Candidates& candidates = impl_->candidates;
     BitGrid bits(region.size);
     const glm::ivec3 cells = (region.size + cell_side - 1) / cell_side;
     const std::int64_t unit = region.voxel_side();

@@ -28,16 +28,16 @@ public:
     [[nodiscard]] voxelizer::BitGrid in(const voxelizer::Region& region) const;
 
 private:
-    struct Parts;
-    std::unique_ptr<Parts> parts_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
-/// The same for one region alone.
+/// The exact voxels of one region alone.
 [[nodiscard]] voxelizer::BitGrid exact_voxels(const voxelizer::Surface& surface,
                                               const voxelizer::Region& region);
 
 struct Comparison {
-    std::uint64_t occupied = 0;               ///< in the truth
+    std::uint64_t occupied = 0;               ///< voxels that are occupied in the truth
     std::uint64_t missing = 0;                ///< occupied in the truth only
     std::uint64_t extra = 0;                  ///< occupied in ours only
     std::vector<glm::ivec3> first_different;  ///< at most eight, by z, y, x

@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "optics/srgb.h"
 #include "reference/traced_scene.h"
 
 namespace cairn::reference {
@@ -227,15 +228,10 @@ glm::vec3 shade(const TracedScene& scene, const PictureRays& rays, const Shading
     return look.color_at(at) * shading.light_color * (sky + (1.0F - shading.ambient) * facing);
 }
 
-float srgb_from_linear(float c) {
-    const float clamped = std::min(std::max(c, 0.0F), 1.0F);
-    return clamped > 0.0031308F ? 1.055F * std::pow(clamped, 1.0F / 2.4F) - 0.055F : 12.92F * clamped;
-}
-
 }  // namespace
 
 ShadedImage ImageTracer::shade(const optics::Camera& camera, const optics::Light& light,
-                               const Shading& shading, int width, int height, int samples_a_side) const {
+                               const Shading& shading, int width, int height, int samples_per_side) const {
     const TracedScene& scene = impl_->scene;
     const PictureRays rays(camera, light, scene, {width, height});
     ShadedImage image;
@@ -243,22 +239,23 @@ ShadedImage ImageTracer::shade(const optics::Camera& camera, const optics::Light
     image.height = height;
     image.srgb.resize(std::size_t(width) * std::size_t(height));
     image.coverage.resize(image.srgb.size());
-    const float share = 1.0F / float(samples_a_side * samples_a_side);
+    const float share = 1.0F / float(samples_per_side * samples_per_side);
     const auto start = Clock::now();
     tbb::parallel_for(0, height, [&](int y) {
         for (int x = 0; x < width; ++x) {
             glm::vec3 sum(0.0F);
             float covered = 0.0F;
-            for (int s = 0; s < samples_a_side * samples_a_side; ++s) {
-                const glm::dvec2 in_pixel((s % samples_a_side + 0.5) / samples_a_side,
-                                          (s / samples_a_side + 0.5) / samples_a_side);
+            for (int s = 0; s < samples_per_side * samples_per_side; ++s) {
+                const glm::ivec2 cell(s % samples_per_side, s / samples_per_side);
+                const glm::dvec2 in_pixel = (glm::dvec2(cell) + 0.5) / double(samples_per_side);
                 const glm::vec3 light_seen =
                     reference::shade(scene, rays, shading, rays.direction(glm::dvec2(x, y) + in_pixel));
                 covered += light_seen.x < 0.0F ? 0.0F : share;
                 sum += share * (light_seen.x < 0.0F ? shading.background : light_seen);
             }
             const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            image.srgb[p] = {srgb_from_linear(sum.r), srgb_from_linear(sum.g), srgb_from_linear(sum.b)};
+            image.srgb[p] = {optics::srgb_from_linear(sum.r), optics::srgb_from_linear(sum.g),
+                             optics::srgb_from_linear(sum.b)};
             image.coverage[p] = covered;
         }
     });

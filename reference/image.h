@@ -22,16 +22,17 @@ struct ReferenceImage {
     int height = 0;
     std::vector<float> depth;       ///< distance from the eye in the world; infinite = nothing there
     std::vector<std::uint8_t> lit;  ///< 1 = nothing stands between the surface and the light
-    std::vector<std::uint32_t>
-        primitive;              ///< triangles counted through the snapshot's items; or no_primitive
-    double milliseconds = 0.0;  ///< all rays; the tree of boxes is built before
+    /// Number of the triangle, counted through the snapshot's items; or no_primitive.
+    std::vector<std::uint32_t> primitive;
+    /// Time of all rays; the tree of boxes is built before.
+    double milliseconds = 0.0;
 };
 
 /// How surfaces look: base colour by the cosine to the light, and by some light from everywhere, as the
 /// ray-marcher's pictures do.
 struct Shading {
     glm::vec3 light_color{1.0F};
-    float ambient = 0.25F;                      ///< as a share of the light's own
+    float ambient = 0.25F;                      ///< light from everywhere, as a share of the light's own
     glm::vec3 background{0.80F, 0.84F, 0.90F};  ///< linear
     bool shadows = true;
 };
@@ -66,9 +67,10 @@ public:
     [[nodiscard]] ReferenceImage trace(const optics::Camera& camera, const optics::Light& light, int width,
                                        int height, int threads = 0, Rays kind = Rays::single) const;
 
-    /// The picture with samples_a_side^2 rays a pixel, on a regular grid, each with a shadow ray.
+    /// The picture with samples_per_side^2 rays per pixel, on a regular grid, each with a shadow ray.
     [[nodiscard]] ShadedImage shade(const optics::Camera& camera, const optics::Light& light,
-                                    const Shading& shading, int width, int height, int samples_a_side) const;
+                                    const Shading& shading, int width, int height,
+                                    int samples_per_side) const;
 
     /// Whether a surface stands between two points of the world. Either end's own surface does not count:
     /// what is nearer to `from` or `to` than 1e-5 of the scene's diagonal is not seen.

@@ -25,7 +25,7 @@ struct FileHead {
 };
 static_assert(sizeof(FileHead) == 24);
 
-/// What follows: one a point.
+/// What follows the header: one per point.
 struct Entry {
     double visible = 0.0;
     double standard_error = 0.0;

@@ -34,16 +34,16 @@ struct ShadowQuestion {
 struct ShadowReceivers {
     ReferenceImage seen;              ///< with the hard shadow of the light's middle
     std::vector<std::size_t> pixels;  ///< row after row
-    std::vector<glm::dvec3> points;   ///< world, one a pixel
-    std::vector<glm::dvec3> normals;  ///< of the triangle, unit, to the eye's side
+    std::vector<glm::dvec3> points;   ///< world, one per pixel
+    std::vector<glm::dvec3> normals;  ///< normals of the triangles, of length 1, to the eye's side
 };
 /// @param tracer  of the question's scene and snapshot.
 [[nodiscard]] ShadowReceivers shadow_receivers(const ImageTracer& tracer, const ShadowQuestion& question);
 
 /// What of the light arrives, for each pixel of the picture: [0, 1]; -1 where nothing can be shadowed.
-/// @param values  one a pixel of `receivers`.
+/// @param values  one per pixel of `receivers`.
 [[nodiscard]] std::vector<float> shares_of(const ShadowReceivers& receivers, std::span<const float> values);
-/// The same with a hard shadow: 0 or 1.
+/// The shares of a hard shadow: 0 or 1.
 [[nodiscard]] std::vector<float> hard_shares(const ShadowReceivers& receivers);
 
 struct SoftShares {
@@ -52,7 +52,7 @@ struct SoftShares {
     double milliseconds = 0.0;  ///< 0 from the cache
     bool cached = false;
 };
-/// The same with a soft shadow.
+/// The shares of a soft shadow.
 /// @param cache  a folder that keeps answers by a hash of all that they depend on; made if need be.
 /// @throws Error  as area_light_visibility() does; Fault::usage when the folder cannot be written.
 [[nodiscard]] SoftShares soft_shares(const ImageTracer& tracer, const ShadowQuestion& question,
@@ -62,10 +62,11 @@ struct SoftShares {
 /// How far a shadow is from the truth, over the pixels for which both have a share.
 struct ShadowError {
     std::size_t pixels = 0;
-    std::size_t shadowed = 0;   ///< of them, less than half of the light arrives in truth
+    std::size_t shadowed = 0;   ///< pixels where less than half of the light arrives in truth
     std::size_t too_light = 0;  ///< half of the light and more arrives, where in truth less does
     std::size_t too_dark = 0;   ///< the other way round
-    std::size_t in_shadow = 0;  ///< in shadow or penumbra: not all of the light arrives in truth
+    /// Pixels in shadow or penumbra: not all of the light arrives in truth.
+    std::size_t in_shadow = 0;
     double absolute_sum = 0.0;
     double square_sum = 0.0;
     double greatest = 0.0;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "optics/srgb.h"
 
 namespace cairn::reference {
 namespace {
@@ -18,10 +19,6 @@ int wrapped(double coordinate, int size, scenes::Wrap wrap) {
     const bool odd = std::fmod(std::abs(std::floor(coordinate)), 2.0) == 1.0;
     if (wrap == scenes::Wrap::mirrored_repeat && odd) unit = 1.0 - unit;
     return std::min(int(unit * size), size - 1);
-}
-
-float linear_from_srgb(float c) {
-    return c > 0.04045F ? std::pow((c + 0.055F) / 1.055F, 2.4F) : c / 12.92F;
 }
 
 /// Sum of a vertex attribute's values at the corners, weighted.
@@ -81,7 +78,8 @@ glm::vec3 PrimitiveLook::color_at(const TrianglePoint& point) const {
     const glm::vec3 vertex(vertex_color_at(point));
     if (material == nullptr) return vertex;
     const glm::vec4 texel = texel_at(point);
-    const glm::vec3 linear(linear_from_srgb(texel.r), linear_from_srgb(texel.g), linear_from_srgb(texel.b));
+    const glm::vec3 linear(optics::linear_from_srgb(texel.r), optics::linear_from_srgb(texel.g),
+                           optics::linear_from_srgb(texel.b));
     return glm::vec3(material->base_color) * vertex * (image != nullptr ? linear : glm::vec3(1.0F));
 }
 

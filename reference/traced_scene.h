@@ -14,7 +14,7 @@ namespace cairn::reference {
 
 /// A point on a triangle, by weights of its corners.
 struct TrianglePoint {
-    unsigned triangle = 0;  ///< of its primitive
+    unsigned triangle = 0;  ///< its number in the primitive
     glm::vec3 weights{1.0F, 0.0F, 0.0F};
 };
 
@@ -46,8 +46,8 @@ struct TracedScene {
 
     EmbreeDevice device;
     EmbreeScene tree;
-    std::vector<PrimitiveLook> looks;           ///< of each geometry; Embree points in here
-    std::vector<std::uint32_t> first_triangle;  ///< of each geometry, counted through the items
+    std::vector<PrimitiveLook> looks;           ///< one per geometry; Embree points in here
+    std::vector<std::uint32_t> first_triangle;  ///< one per geometry, counted through the items
     glm::dvec3 centre{0.0};
     double size = 1.0;  ///< diagonal of the bounds
     double build_milliseconds = 0.0;
@@ -78,7 +78,8 @@ private:
     const optics::Light& light_;
     glm::ivec2 size_;
     glm::dvec3 eye_, centre_, forward_, right_, up_;
-    float gap_;  ///< shadow rays start so far from the surface, not to meet it again
+    /// Shadow rays start so far from the surface, not to meet it again.
+    float gap_;
 };
 
 }  // namespace cairn::reference

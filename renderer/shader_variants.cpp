@@ -15,7 +15,7 @@ gl::Defines joined(gl::Defines first, const gl::Defines& second) {
     return first;
 }
 
-MarchKind volume(int steps, bool has_constant) {
+ContentProgram volume(int steps, bool has_constant) {
     return {.primary = "march/volume.comp.glsl",
             .shadow = "march/volume_shadow.comp.glsl",
             .volume_steps = steps,
@@ -27,7 +27,7 @@ std::vector<gl::ShaderVariants> of_marcher() {
     for (const MarchSetting& setting : march_settings()) {
         for (const RayKind rays : {RayKind::primary, RayKind::shadow}) {
             const bool is_primary = rays == RayKind::primary;
-            auto& sets = by_name[is_primary ? setting.kind.primary : setting.kind.shadow];
+            auto& sets = by_name[is_primary ? setting.content.primary : setting.content.shadow];
             for (const MarchVariant& variant : valid_variants(rays, setting))
                 sets.push_back(joined(defines(setting), defines(variant)));
         }

@@ -11,7 +11,7 @@ namespace cairn::scenes {
 
 struct DeformedVertices {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;  ///< of length 1 or 0; empty when the primitive has none
+    std::vector<glm::vec3> normals;  ///< of length 1 or 0; empty if the primitive has no normals
 };
 
 // The order of all operations here is part of the contract, because shaders/voxelize/deform.comp.glsl follows

@@ -12,9 +12,10 @@ namespace cairn::scenes {
 
 /// All nodes of a scene at one moment.
 struct Pose {
-    std::vector<glm::dmat4> world_from_node;  ///< one a node
-    std::vector<std::vector<float>>
-        morph_weights;  ///< one a node that an animation morphs; empty: the node's own
+    std::vector<glm::dmat4> world_from_node;  ///< one matrix per node
+    /// Per node, the weights that the animation gives its mesh; empty if it gives none, and the node's own
+    /// count.
+    std::vector<std::vector<float>> morph_weights;
 };
 
 [[nodiscard]] glm::dmat4 matrix_of(const Trs& trs);
@@ -34,8 +35,8 @@ private:
 
     const Scene& scene_;
     const Animation* animation_;
-    std::vector<std::size_t> order_;  ///< of the nodes: parents before children
-    std::vector<int> parents_;        ///< one a node; -1 = none
+    std::vector<std::size_t> order_;  ///< numbers of all nodes, parents before children
+    std::vector<int> parents_;        ///< per node the number of its parent; -1: no parent
     std::vector<Trs> moved_;
     std::vector<double> value_;
     std::vector<double> next_;

@@ -35,7 +35,8 @@ struct Texture {
 
 enum class AlphaMode : std::uint8_t {
     opaque,
-    mask,   ///< a texel whose alpha is under the cutoff is a hole in the surface
+    /// A texel whose alpha is under the cutoff is a hole in the surface.
+    mask,
     blend,  ///< counts as surface
 };
 
@@ -53,30 +54,31 @@ struct Material {
 enum class Topology : std::uint8_t { points, lines, triangles };
 
 struct MorphTarget {
-    std::vector<glm::vec3> positions;  ///< a displacement for each vertex, or empty
-    std::vector<glm::vec3> normals;    ///< the same, or empty
+    std::vector<glm::vec3> positions;  ///< a displacement per vertex, or empty
+    std::vector<glm::vec3> normals;    ///< a displacement per vertex, or empty
 };
 
 struct SkinWeights {
-    glm::u16vec4 joints{0};   ///< into Skin::joints
-    glm::vec4 weights{0.0F};  ///< with Primitive::more_skin: sum 1 (normalized when loaded), or all 0
+    glm::u16vec4 joints{0};  ///< into Skin::joints
+    /// The sum over all sets of a vertex (Primitive::more_skin) is 1, normalized when loaded; or all are 0.
+    glm::vec4 weights{0.0F};
 };
 
 /// Vertices and what they span. Strips, fans and loops are unrolled and missing indices written out when
-/// loaded, so `indices` always holds 1, 2 or 3 entries a point, line or triangle. An optional attribute is
-/// empty when the file has none, else it has one entry a vertex.
+/// loaded, so `indices` always holds 1, 2 or 3 entries per point, line or triangle. An optional attribute
+/// is empty if the file has none, else it has one entry per vertex.
 struct Primitive {
     Topology topology = Topology::triangles;
     int material = -1;  ///< into Scene::materials; -1: white, opaque
     std::vector<std::uint32_t> indices;
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
-    std::vector<glm::vec2>
-        texcoords;  ///< the set that the material's base colour texture uses, before uv_from_mesh
+    /// The set that the material's base colour texture uses, before uv_from_mesh.
+    std::vector<glm::vec2> texcoords;
     std::vector<glm::u8vec4> colors;  ///< COLOR_0: linear RGBA, 255 = 1
     std::vector<SkinWeights> skin;
-    std::vector<std::vector<SkinWeights>>
-        more_skin;  ///< further influences (JOINTS_1, ...), each one a vertex
+    /// Further sets of influences (JOINTS_1, ...), each with one entry per vertex.
+    std::vector<std::vector<SkinWeights>> more_skin;
     std::vector<MorphTarget> morph_targets;
 
     [[nodiscard]] std::size_t element_count() const {
@@ -87,7 +89,8 @@ struct Primitive {
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
-    std::vector<float> morph_weights;  ///< defaults; one for each morph target of its primitives
+    /// Default weights, one per morph target of its primitives.
+    std::vector<float> morph_weights;
 };
 
 /// Translation, rotation, scale: applied scale first.
@@ -106,14 +109,14 @@ struct Node {
     int skin = -1;
     int camera = -1;
     int light = -1;
-    std::vector<Trs>
-        instances;  ///< EXT_mesh_gpu_instancing: the mesh is drawn once for each; empty: once, in place
+    /// EXT_mesh_gpu_instancing: the mesh is drawn once per instance; if empty, once, where the node is.
+    std::vector<Trs> instances;
     std::vector<float> morph_weights;  ///< overrides the mesh's when not empty
 };
 
 struct Skin {
     std::vector<int> joints;                  ///< nodes
-    std::vector<glm::dmat4> joint_from_mesh;  ///< inverse bind matrices, one a joint
+    std::vector<glm::dmat4> joint_from_mesh;  ///< inverse bind matrices, one per joint
 };
 
 enum class Path : std::uint8_t { translation, rotation, scale, weights };
@@ -176,8 +179,8 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<SceneRoots> scenes;  ///< at least one
     int default_scene = 0;
-    std::vector<std::string>
-        warnings;  ///< once each: optional extensions that are not supported, and the like
+    /// Optional extensions that are not supported, and the like; each warning once.
+    std::vector<std::string> warnings;
 };
 
 }  // namespace cairn::scenes

@@ -20,7 +20,8 @@ constexpr std::size_t most_items = 4'000'000;
 /// What is found once of a primitive, however often it is placed.
 struct Extent {
     std::vector<std::uint32_t> used;  ///< the vertices that its indices name; empty = all
-    Bounds bounds;                    ///< of these, in mesh space; only for positions as the file has them
+    /// Of these, in mesh space; only for positions as the file has them.
+    Bounds bounds;
 };
 
 Extent extent_of(const Primitive& primitive) {

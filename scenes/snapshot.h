@@ -27,7 +27,7 @@ struct Bounds {
 /// Snapshot where a skin or morph targets moved the vertices.
 struct Item {
     const Primitive* primitive = nullptr;
-    std::span<const glm::vec3> positions;  ///< mesh space; one a vertex
+    std::span<const glm::vec3> positions;  ///< mesh space; one per vertex
     std::span<const glm::vec3> normals;    ///< mesh space; empty when the file has none
     glm::dmat4 world_from_mesh{1.0};
     int node = -1;         ///< into Scene::nodes
@@ -55,7 +55,8 @@ struct Snapshot {
     std::vector<Item> items;
     std::vector<PlacedLight> lights;
     std::vector<PlacedCamera> cameras;
-    Bounds bounds;  ///< exact bounds of all vertices that a primitive uses, in world space
+    /// Exact bounds of all vertices that a primitive uses, in world space.
+    Bounds bounds;
     std::uint64_t triangle_count = 0;
     std::uint64_t line_count = 0;
     std::uint64_t point_count = 0;

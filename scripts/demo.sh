@@ -17,16 +17,16 @@ stage() {
 }
 
 build() {
-  cmake --preset release
-  cmake --build --preset release --target cairn_app
+  cmake --preset run-only
+  cmake --build --preset run-only --target cairn_app
 }
 
 render() {
   mkdir -p "$(dirname "$picture")"
-  build/release/app/cairn render "$scene" --size 1024x768 --shadow hard -o "$picture"
+  build/run-only/app/cairn render "$scene" --size 1024x768 --shadow hard -o "$picture"
 }
 
-stage packages scripts/setup.sh
+stage packages scripts/setup.sh --run-only
 stage build build
 stage render render
 printf '\nThe picture is %s\n%s' "$PWD/$picture" "$report"

@@ -1,21 +1,34 @@
-# The one list of what Cairn needs from Debian 12 or Ubuntu 24.04. Sourced by setup.sh; it only sets two arrays.
+# The one list of what Cairn needs from Debian 12 or Ubuntu 24.04, by what it is needed for. Sourced by setup.sh; it only
+# sets arrays.
 # shellcheck shell=bash disable=SC2034
 
-packages=(
-  # to build
-  g++ cmake ninja-build pkg-config python3-glad
-  # linked, or compiled in
-  libglm-dev libfmt-dev libglfw3-dev libegl-dev libtinygltf-dev libstb-dev nlohmann-json3-dev
-  libdraco-dev libmeshoptimizer-dev zlib1g-dev libembree-dev libtbb-dev libxxhash-dev libcli11-dev libimgui-dev
-  # opened when the program runs: OpenGL without a GPU and without a display
+# For a picture: to build the libraries and the command, and to run it without a GPU and without a display.
+run_packages=(
+  g++ cmake ninja-build python3-glad
+  libglm-dev libfmt-dev libegl-dev libtinygltf-dev libstb-dev nlohmann-json3-dev libdraco-dev libmeshoptimizer-dev
+  zlib1g-dev libembree-dev libtbb-dev libxxhash-dev libcli11-dev
   libegl1 libgl1-mesa-dri
-  # to test, and to have something to show
-  libgtest-dev libgmp-dev glslang-tools xvfb xdotool assimp-testmodels
-  # to read back, in tests, the voxel files that are written
-  python3-numpy python3-openvdb libopenvdb-tools goxel
-  # to measure: peers, and what draws the charts
-  libopenvdb-dev libnanovdb-dev libboost-dev gnuplot-nox
+  # a scene to show
+  assimp-testmodels
 )
 
 # Mesa 25.1 ended OSMesa, so a newer distribution may lack it; EGL then takes its place.
 optional_packages=(libosmesa6)
+
+# `cairn view`
+view_packages=(libglfw3-dev libimgui-dev pkg-config)
+
+test_packages=(
+  libgtest-dev libgmp-dev pkg-config glslang-tools xvfb xdotool
+  # to read back the voxel files that are written
+  python3-numpy python3-openvdb libopenvdb-tools goxel
+)
+
+# To measure: peers, and what draws the charts.
+bench_packages=(libopenvdb-dev libnanovdb-dev libboost-dev gnuplot-nox)
+
+# A second compiler, with its sanitizers and libFuzzer.
+clang_packages=(clang libclang-rt-dev)
+
+# scripts/lint.sh
+lint_packages=(clang clang-format clang-tidy shellcheck codespell git)

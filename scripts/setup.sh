@@ -1,7 +1,36 @@
 #!/usr/bin/env bash
 # Installs what is missing of scripts/packages.sh, after saying so. When nothing is missing it only asks dpkg, and ends.
+#
+#   scripts/setup.sh [--all]      to build everything, to run every test and every chart
+#   scripts/setup.sh --run-only   for a picture: the command without windows
+#   scripts/setup.sh --lint       for scripts/lint.sh
+#   scripts/setup.sh --clang      for the presets of clang, and for fuzzing
+#
+# Several of them add up.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/packages.sh"
+
+# Set by packages.sh, one list per purpose.
+declare -a run_packages view_packages test_packages bench_packages lint_packages clang_packages optional_packages
+
+packages=()
+if (($# == 0)); then set -- --all; fi
+for purpose in "$@"; do
+  case $purpose in
+    --run-only) packages+=("${run_packages[@]}") ;;
+    --all) packages+=("${run_packages[@]}" "${view_packages[@]}" "${test_packages[@]}" "${bench_packages[@]}") ;;
+    # clang-tidy reads what all of the code includes.
+    --lint) packages+=("${run_packages[@]}" "${view_packages[@]}" "${test_packages[@]}" "${bench_packages[@]}"
+      "${lint_packages[@]}") ;;
+    --clang) packages+=("${run_packages[@]}" "${clang_packages[@]}") ;;
+    *)
+      echo "error: setup.sh does not know \"$purpose\"" >&2
+      echo "  it takes --all, --run-only, --lint and --clang" >&2
+      exit 2
+      ;;
+  esac
+done
+mapfile -t packages < <(printf '%s\n' "${packages[@]}" | sort -u)
 
 if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then
   {

@@ -1,12 +1,29 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs every test. Arguments go to ctest: scripts/test.sh -R Builtin
+# Installs what is missing, builds everything and runs every test.
+#
+#   scripts/test.sh [--preset NAME] [arguments of ctest]
+#   scripts/test.sh -R Builtin
+#
+# Tests on real scenes run where there are some: in the folder that the environment variable CAIRN_SCENE_DATA names, or in
+# ../shared/data.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+preset=release
+if [[ ${1:-} == --preset ]]; then
+  preset=${2:?"--preset takes the name of a preset of CMakePresets.json"}
+  shift 2
+fi
 
 # The tests run without a display, also where there is one.
 unset DISPLAY WAYLAND_DISPLAY
 
-scripts/setup.sh
-cmake --preset release
-cmake --build --preset release
-ctest --preset release -j2 "$@"
+if [[ -z ${CAIRN_SCENE_DATA+set} && -d ../shared/data ]]; then
+  CAIRN_SCENE_DATA=$(cd ../shared/data && pwd)
+fi
+export CAIRN_SCENE_DATA=${CAIRN_SCENE_DATA:-}
+
+scripts/setup.sh --all
+cmake --preset "$preset"
+cmake --build --preset "$preset"
+ctest --preset "$preset" -j"$(nproc)" "$@"

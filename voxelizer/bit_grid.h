@@ -8,7 +8,7 @@
 
 namespace cairn::voxelizer {
 
-/// One bit a voxel, 1 = occupied. Rows run along x, in 32-bit words: voxel x is bit x % 32 of word x / 32.
+/// One bit per voxel, 1 = occupied. Rows run along x, in 32-bit words: voxel x is bit x % 32 of word x / 32.
 ///
 ///     word index = (z * size.y + y) * words_per_row + x / 32,   words_per_row = ceil(size.x / 32)
 ///
@@ -36,11 +36,12 @@ struct BitGrid {
 
 /// Along which axes the levels of a pyramid halve (Forest et al. 2009, section 2.3, Figure 4).
 enum class Reduction : std::uint8_t {
-    xy,   ///< Figure 4a: every level keeps all slices of z, so that one look-up reads a column
+    /// Figure 4a: every level keeps all slices of z, so that one look-up reads a column.
+    xy,
     xyz,  ///< Figure 4b: the standard octree
 };
 
-/// One bit a voxel at every level, each level the OR of the finer one (Forest et al. 2009, section 2.3).
+/// One bit per voxel at every level, each level the OR of the finer one (Forest et al. 2009, section 2.3).
 /// Level 0 is the finest; sizes halve along the axes of the reduction, rounded up, until all of these are 1.
 class BitmaskPyramid {
 public:

@@ -7,9 +7,13 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "shaders/interop/grid.h"
 
 namespace cairn::voxelizer {
 namespace {
+
+static_assert(lattice_bits == LATTICE_BITS && lattice_world_limit == LATTICE_WORLD_LIMIT,
+              "the shaders have another lattice");
 
 void check_resolution(const glm::ivec3& resolution) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -73,19 +77,15 @@ glm::i64vec3 Grid::lattice_from_world(const glm::dvec3& world) const {
     const glm::dvec3 units = (world - origin) * lattice_scale();
     glm::i64vec3 nearest;
     for (int axis = 0; axis < 3; ++axis) {
-        if (!(std::abs(units[axis]) <= LATTICE_WORLD_LIMIT)) {
+        if (!(std::abs(units[axis]) <= lattice_world_limit)) {
             throw Error(Fault::input, "surface",
                         fmt::format("the point ({}, {}, {}) is too far from the grid, or not finite", world.x,
                                     world.y, world.z),
-                        "choose a larger grid (--bounds)");
+                        "choose a larger grid (grid_over())");
         }
         nearest[axis] = std::int64_t(std::floor(units[axis] + 0.5));
     }
     return nearest;
-}
-
-glm::dvec3 Grid::world_from_lattice(const glm::dvec3& lattice) const {
-    return origin + lattice * lattice_unit();
 }
 
 Grid grid_around(const scenes::Bounds& bounds, const glm::ivec3& resolution) {

@@ -5,9 +5,14 @@
 #include <glm/glm.hpp>
 
 #include "scenes/snapshot.h"
-#include "shaders/interop/grid.h"
 
 namespace cairn::voxelizer {
+
+/// log2 of the lattice units across a root cube (LATTICE_BITS in the shaders).
+constexpr int lattice_bits = 24;
+/// The lattice units from a grid's origin, along each axis, that a vertex may be away: 2^40
+/// (LATTICE_WORLD_LIMIT in the shaders).
+constexpr double lattice_world_limit = 0x1p40;
 
 /// Where voxels lie in the world: voxel (i, j, k) is the closed box from origin + (i, j, k) * voxel_size to
 /// origin + (i+1, j+1, k+1) * voxel_size. World to grid is a uniform scale and a translation.
@@ -21,17 +26,16 @@ struct Grid {
     double voxel_size = 1.0;
     glm::ivec3 resolution{0};  ///< voxels along x, y, z; each in [1, 2^24]
 
-    /// The root cube is 2^level voxels a side: the smallest that holds the longest axis.
+    /// The root cube is 2^level voxels along each side: the smallest that holds the longest axis.
     [[nodiscard]] int level() const;
     /// Side of a lattice unit in the world.
     [[nodiscard]] double lattice_unit() const;
-    /// Lattice units a world unit: what lattice_from_world multiplies by. A product, because a quotient of
+    /// Lattice units per world unit: what lattice_from_world multiplies by. A product, because a quotient of
     /// doubles is not rounded alike by all drivers, and shaders/voxelize/deform.comp.glsl must agree.
     [[nodiscard]] double lattice_scale() const;
     /// Nearest lattice point, floor((world - origin) * lattice_scale() + 1/2); not limited to the root cube.
-    /// @throws Error (Fault::input) past +-LATTICE_WORLD_LIMIT units.
+    /// @throws Error (Fault::input) past +-lattice_world_limit units.
     [[nodiscard]] glm::i64vec3 lattice_from_world(const glm::dvec3& world) const;
-    [[nodiscard]] glm::dvec3 world_from_lattice(const glm::dvec3& lattice) const;
 };
 
 /// The default grid: around the bounds, centred, with the least voxels that leave one empty on each side of
@@ -42,19 +46,19 @@ struct Grid {
     return grid_around(bounds, glm::ivec3(resolution));
 }
 
-/// A grid over given bounds (`--bounds`): low corner kept, with the least voxels that cover the bounds along
+/// A grid over given bounds : low corner kept, with the least voxels that cover the bounds along
 /// every axis. So a cube's side is the longest axis.
 [[nodiscard]] Grid grid_over(const scenes::Bounds& bounds, const glm::ivec3& resolution);
 [[nodiscard]] inline Grid grid_over(const scenes::Bounds& bounds, int resolution) {
     return grid_over(bounds, glm::ivec3(resolution));
 }
 
-constexpr int MAX_GRID_RESOLUTION = 1 << LATTICE_BITS;
+constexpr int MAX_GRID_RESOLUTION = 1 << lattice_bits;
 
-/// Voxels of a given size (`--voxel-size`), as many as it takes to leave one empty on each side of every
+/// Voxels of a given size , as many as it takes to leave one empty on each side of every
 /// axis; centred. Empty bounds give one voxel at the world's origin.
 /// @param voxel_size  world units, above 0
-/// @param limit       of voxels along an axis
+/// @param limit       the most voxels along an axis
 /// @throws Error      Fault::usage past the limit; says which size would fit.
 [[nodiscard]] Grid grid_of_voxels_around(const scenes::Bounds& bounds, double voxel_size,
                                          int limit = MAX_GRID_RESOLUTION);
@@ -71,8 +75,8 @@ struct Region {
     glm::ivec3 origin{0};
     glm::ivec3 size{0};
 
-    /// Lattice units a voxel.
-    [[nodiscard]] int voxel_side() const { return 1 << (LATTICE_BITS - level); }
+    /// Lattice units along the side of a voxel.
+    [[nodiscard]] int voxel_side() const { return 1 << (lattice_bits - level); }
 };
 
 /// All voxels of a grid.

@@ -59,6 +59,26 @@ template <typename Options, typename Member>
             }};
 }
 
+/// A number within [low, high].
+template <typename Options, typename Member>
+[[nodiscard]] OptionRow<Options> number_row(const char* name, const char* value_name, std::string description,
+                                            double low, double high, Member member) {
+    return {name, value_name, std::move(description),
+            [=](Options& options, const char* option, const std::string& text) {
+                const double value = parse_number(option, text);
+                if (value < low || value > high) {
+                    throw Error(Fault::usage, option,
+                                fmt::format("{} is not between {} and {}", value, low, high));
+                }
+                member(options) = value;
+            },
+            [=](const Options& options) -> std::optional<std::string> {
+                const std::optional<double> value = member(options);
+                if (!value) return std::nullopt;
+                return fmt::format("{}", *value);
+            }};
+}
+
 /// A text that is taken as it stands.
 template <typename Options, typename Member>
 [[nodiscard]] OptionRow<Options> text_row(const char* name, const char* value_name, std::string description,

@@ -1,5 +1,6 @@
 #include "app/options/parse.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -8,12 +9,10 @@
 #include <glm/glm.hpp>
 
 #include "base/error.h"
+#include "renderer/view/view.h"
 
 namespace cairn::app {
 namespace {
-
-/// The largest side of a viewport that OpenGL 4.5 promises.
-constexpr int max_image_side = 16384;
 
 template <typename Number>
 std::optional<Number> read_whole(std::string_view text) {
@@ -64,9 +63,9 @@ std::vector<double> parse_numbers(std::string_view option, std::string_view text
                     fmt::format("\"{}\" has {} of the {} numbers it needs", text, parts.size(), wanted),
                     "write them with commas and no spaces: 1,2.5,-3");
     }
-    std::vector<double> numbers;
-    for (const std::string_view part : parts)
-        numbers.push_back(parse_number(option, part));
+    std::vector<double> numbers(parts.size());
+    std::ranges::transform(parts, numbers.begin(),
+                           [&](std::string_view part) { return parse_number(option, part); });
     return numbers;
 }
 
@@ -94,7 +93,8 @@ std::pair<int, int> parse_size(std::string_view option, std::string_view text) {
         throw Error(Fault::usage, std::string(option), fmt::format("\"{}\" is not WIDTHxHEIGHT", text),
                     "for example 1024x768");
     }
-    return {parse_int(option, parts[0], 1, max_image_side), parse_int(option, parts[1], 1, max_image_side)};
+    return {parse_int(option, parts[0], 1, renderer::MAX_PICTURE_SIDE),
+            parse_int(option, parts[1], 1, renderer::MAX_PICTURE_SIDE)};
 }
 
 }  // namespace cairn::app

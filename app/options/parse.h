@@ -26,7 +26,7 @@ namespace cairn::app {
 /// The degrees of an angle, rounded to 1e-9: the way from degrees to radians and back ends where it began.
 [[nodiscard]] double degrees_of(double radians);
 
-/// "640x480", each within [1, 16384].
+/// "640x480", each within [1, renderer::MAX_PICTURE_SIDE].
 [[nodiscard]] std::pair<int, int> parse_size(std::string_view option, std::string_view text);
 
 }  // namespace cairn::app

@@ -198,7 +198,6 @@ void add_shadow_options(CLI::App& verb, ShadowOptions& options) {
         ->type_name("NODE");
     add_table(verb, map_table(), options);
     add_table(verb, tree_table(), options.view);
-    options.max_resolution = verb.get_option("--max-resolution");
     add_table(verb, truth_table(), options);
     add_common_options(verb, options.common);
 }

@@ -12,10 +12,11 @@
 #include "app/options/options.h"
 #include "app/options/view_options.h"
 #include "optics/light.h"
-#include "renderer/shadow/soft_shadow_map.h"
+#include "renderer/shadow/shadow_options.h"
 
 namespace cairn::app {
 
+/// Those of the renderer, and the truth.
 enum class ShadowMethod : std::uint8_t { voxel, pyramid, soft_shadow_map, embree };
 
 struct ShadowOptions {
@@ -33,9 +34,8 @@ struct ShadowOptions {
     std::optional<glm::dvec3> target;        ///< what a rectangle or a disk shines on
     std::vector<std::string> occluders, receivers;
     renderer::SoftShadowOptions map;
-    bool map_given = false;                       ///< any of its options
-    bool ground = false;                          ///< a plane is added under the scene
-    const CLI::Option* max_resolution = nullptr;  ///< to ask whether it was given
+    bool map_given = false;  ///< any of its options
+    bool ground = false;     ///< a plane is added under the scene
     int truth_samples = 256;
     std::optional<std::filesystem::path> truth_cache;
 };

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/march/transfer_function.h"
+#include "renderer/produce/transfer_function.h"
 
 namespace cairn::app {
 

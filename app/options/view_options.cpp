@@ -10,7 +10,9 @@
 #include <glm/gtc/constants.hpp>
 
 #include "app/options/parse.h"
+#include "app/options/voxel_rows.h"
 #include "base/error.h"
+#include "renderer/pool/tree_options.h"
 #include "shaders/interop/pool.h"
 
 namespace cairn::app {
@@ -68,14 +70,17 @@ Names<ShadowKind> shadow_names() {
     return {{"none", ShadowKind::none}, {"hard", ShadowKind::hard}, {"soft", ShadowKind::soft}};
 }
 
-void set_shadow(renderer::View& view, ShadowKind kind) {
-    view.shadow = kind == ShadowKind::none ? renderer::Shadow::none : renderer::Shadow::hard;
-    view.shadow_rays = kind == ShadowKind::soft ? default_soft_rays : 1;
+renderer::ShadowQuality::Kind quality_of(ShadowKind kind) {
+    using Kind = renderer::ShadowQuality::Kind;
+    if (kind == ShadowKind::none) return Kind::none;
+    return kind == ShadowKind::soft ? Kind::rays : Kind::hard;
 }
 
-ShadowKind shadow_kind(const renderer::View& view) {
-    if (view.shadow == renderer::Shadow::none) return ShadowKind::none;
-    return view.shadow_rays > 1 ? ShadowKind::soft : ShadowKind::hard;
+/// What `--shadow` is for a shadow, which may be of cones.
+ShadowKind shadow_kind(const renderer::ShadowQuality& shadow) {
+    using Kind = renderer::ShadowQuality::Kind;
+    if (shadow.kind == Kind::none) return ShadowKind::none;
+    return shadow.kind == Kind::hard || shadow.samples == 1 ? ShadowKind::hard : ShadowKind::soft;
 }
 
 Names<renderer::Show> show_names() {
@@ -83,19 +88,9 @@ Names<renderer::Show> show_names() {
     return {{"surface", Show::surface}, {"levels", Show::levels}, {"bricks", Show::bricks}};
 }
 
-Names<renderer::LevelOfDetail> level_of_detail_names() {
-    using renderer::LevelOfDetail;
-    return {{"nearest", LevelOfDetail::nearest}, {"blended", LevelOfDetail::blended}};
-}
-
-double pixel_error_of(const char* option, const std::string& text) {
-    const double pixels = parse_number(option, text);
-    if (pixels < least_pixel_error || pixels > largest_pixel_error) {
-        throw Error(
-            Fault::usage, option,
-            fmt::format("{} is not between {} and {}", pixels, least_pixel_error, largest_pixel_error));
-    }
-    return pixels;
+Names<renderer::LevelOfDetail::Kind> level_of_detail_names() {
+    using Kind = renderer::LevelOfDetail::Kind;
+    return {{"nearest", Kind::nearest}, {"blended", Kind::blended}};
 }
 
 /// Memory of a cache: MiB on the command line, bytes in the options.
@@ -135,10 +130,10 @@ OptionTable<ViewOptions> camera_table() {
     return {
         {"--size", "WxH", "pixels (default: {default})",
          [](ViewOptions& options, const char* option, const std::string& text) {
-             std::tie(options.view.width, options.view.height) = parse_size(option, text);
+             std::tie(options.view.size.width, options.view.size.height) = parse_size(option, text);
          },
          [](const ViewOptions& options) {
-             return fmt::format("{}x{}", options.view.width, options.view.height);
+             return fmt::format("{}x{}", options.view.size.width, options.view.size.height);
          }},
         {"--camera", "EX,EY,EZ,TX,TY,TZ[,FOV]",
          "the eye, the point it looks at, and the vertical field of\nview in degrees (default: the whole "
@@ -172,52 +167,61 @@ OptionTable<ViewOptions> shadow_table() {
          fmt::format("shadows of that light; soft ones take {} rays a pixel\n(default: {{default}})",
                      default_soft_rays),
          [names](ViewOptions& options, const char* option, const std::string& text) {
-             set_shadow(options.view, named(option, text, names));
+             options.view.shadow.kind = quality_of(named(option, text, names));
          },
-         [names](const ViewOptions& options) { return name_of(shadow_kind(options.view), names); }},
+         [names](const ViewOptions& options) { return name_of(shadow_kind(options.view.shadow), names); }},
         flag_row<ViewOptions>(
             "--cones",
             "the rays of soft shadows are cones, which read coarser\nvoxels the further "
             "they go",
-            [](auto& options) -> auto& { return options.view.shadow_cones; }),
+            [](auto& options) -> auto& { return options.cones; }),
     };
 }
 
 OptionTable<ViewOptions> tree_table() {
     return {
-        {"--max-resolution", "N",
-         "the most voxels across the scene that rays may ask for\n(default: {default})",
-         [](ViewOptions& options, const char* option, const std::string& text) {
-             options.tree.max_resolution = parse_int(option, text, options.tree.m, max_tree_resolution);
-         },
-         [](const ViewOptions& options) { return std::to_string(options.tree.max_resolution); }},
+        whole_row<ViewOptions>(
+            "--max-resolution", "N",
+            fmt::format("the most voxels across the scene that rays may ask for\n(default: {})",
+                        renderer::TreeOptions{}.max_resolution),
+            least_brick, max_tree_resolution, [](auto& options) -> auto& { return options.max_resolution; }),
         mebibytes_row(
             "--brick-pool", "memory for bricks, in MiB (default: {default})", 1,
-            [](auto& options) -> auto& { return options.tree.brick_pool_bytes; }),
+            [](auto& options) -> auto& { return options.pools.brick_bytes; }),
         mebibytes_row(
             "--brick-cache",
             "main memory for bricks that had to leave the brick pool,\nin MiB (default: 0, none)", 0,
-            [](auto& options) -> auto& { return options.tree.brick_cache_bytes; }),
-        {"--pixel-error", "E",
-         "the size of a voxel on the screen, in pixels, that rays\nlook for (default: {default})",
-         [](ViewOptions& options, const char* option, const std::string& text) {
-             options.view.pixel_error = pixel_error_of(option, text);
-         },
-         [](const ViewOptions& options) { return fmt::format("{}", options.view.pixel_error); }},
+            [](auto& options) -> auto& { return options.pools.cache_bytes; }),
+        number_row<ViewOptions>(
+            "--pixel-error", "E",
+            "the size of a voxel on the screen, in pixels, that rays\nlook for (default: {default})",
+            least_pixel_error, largest_pixel_error,
+            [](auto& options) -> auto& { return options.view.detail.pixel_error; }),
+    };
+}
+
+OptionTable<ViewOptions> march_table() {
+    return {
+        tree_n_row<ViewOptions>([](auto& options) -> auto& { return options.tree_n; }),
+        brick_m_row<ViewOptions>([](auto& options) -> auto& { return options.brick_m; }),
+        traversal_row<ViewOptions>([](auto& options) -> auto& { return options.march.traversal; }),
+    };
+}
+
+OptionTable<ViewOptions> frame_table() {
+    return {
+        tile_queries_row<ViewOptions>([](auto& options) -> auto& { return options.march.tile_queries; }),
+        budget_row<ViewOptions>([](auto& options) -> auto& { return options.frame_budget_ms; }),
     };
 }
 
 OptionTable<ViewOptions> look_table() {
-    const Names<renderer::LevelOfDetail> details = level_of_detail_names();
     return {
-        {"--level-of-detail", joined(details, "|", "|"),
-         "one size of voxels at a time, or two that lead over, so\nthat nothing pops when the camera moves; "
-         "of surfaces\n(default: {default})",
-         [details](ViewOptions& options, const char* option, const std::string& text) {
-             options.view.level_of_detail = named(option, text, details);
-             options.tree.mips = options.view.level_of_detail == renderer::LevelOfDetail::blended;
-         },
-         [details](const ViewOptions& options) { return name_of(options.view.level_of_detail, details); }},
+        named_row<ViewOptions>(
+            "--level-of-detail",
+            "one size of voxels at a time, or two that lead over, so\nthat nothing pops when the camera "
+            "moves; of surfaces\n(default: {default})",
+            level_of_detail_names(), [](auto& options) -> auto& { return options.view.detail.kind; }),
         {"--transfer", "NAME|POINTS",
          fmt::format(
              "what the densities of a volume look like:\n{}; or points\nDENSITY:R,G,B:EXTINCTION with \";\" "
@@ -233,6 +237,8 @@ OptionTable<ViewOptions> look_table() {
         whole_row<ViewOptions>(
             "--copies", "K", "a volume K times along each axis, side by side (default: {default})", 1,
             max_copies, [](auto& options) -> auto& { return options.copies; }),
+        steps_row<ViewOptions>([](auto& options) -> auto& { return options.steps_per_voxel; }),
+        gradient_row<ViewOptions>([](auto& options) -> auto& { return options.gradient_threshold; }),
         named_row<ViewOptions>(
             "--show",
             "the scene, or what its voxels are: their level in the\ntree, or the lines "
@@ -252,17 +258,25 @@ OptionTable<ViewOptions> zoom_table() {
 
 OptionTable<ViewOptions> view_table() {
     OptionTable<ViewOptions> table;
-    for (const auto& part : {camera_table(), shadow_table(), tree_table(), look_table()})
+    for (const auto& part : {camera_table(), shadow_table(), tree_table(), march_table(), look_table()})
         table.insert(table.end(), part.begin(), part.end());
     return table;
 }
 
+renderer::ShadowQuality shadow_of(const ViewOptions& options) {
+    using Kind = renderer::ShadowQuality::Kind;
+    renderer::ShadowQuality shadow = options.view.shadow;
+    if (!options.cones || shadow.kind == Kind::none) return shadow;
+    // One cone sees all of the light, where one ray goes to its middle.
+    if (shadow.kind == Kind::hard) shadow.samples = 1;
+    shadow.kind = Kind::cones;
+    return shadow;
+}
+
 renderer::View view_of(const ViewOptions& options, const scenes::Snapshot& snapshot) {
     renderer::View view = options.view;
-    if (!options.camera_given) {
-        const double aspect = double(view.width) / double(view.height);
-        view.camera = optics::framing_camera(snapshot.bounds, aspect);
-    }
+    view.shadow = shadow_of(options);
+    if (!options.camera_given) view.camera = optics::framing_camera(snapshot.bounds, view.size.aspect());
     if (!options.light_given) view.light = first_light(snapshot).value_or(view.light);
     return view;
 }
@@ -281,10 +295,12 @@ std::string render_command(const SceneOptions& scene, const ViewOptions& options
                            const std::filesystem::path& output) {
     ViewOptions shown = options;
     shown.view = view;
+    shown.cones = view.shadow.kind == renderer::ShadowQuality::Kind::cones;
     shown.camera_given = true;
     std::string line = "cairn render " + shell_word(scene.scene);
     line += command_line(trust_table(), scene) + command_line(moment_table(), scene);
-    line += command_line(view_table(), shown) + command_line(zoom_table(), shown);
+    line += command_line(view_table(), shown) + command_line(frame_table(), shown) +
+            command_line(zoom_table(), shown);
     return line + " --output=" + shell_word(output.string());
 }
 

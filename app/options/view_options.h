@@ -9,7 +9,8 @@
 #include "app/options/option_table.h"
 #include "app/options/options.h"
 #include "app/options/transfer_option.h"
-#include "renderer/renderer.h"
+#include "renderer/renderer_options.h"
+#include "renderer/view/view.h"
 #include "scenes/snapshot.h"
 
 /// What `cairn render` and `cairn view` have in common: from where to look, at what, through which tree.
@@ -18,29 +19,46 @@ namespace cairn::app {
 constexpr int default_soft_rays = 64;  ///< per pixel
 
 struct ViewOptions {
-    /// Its camera and its light count only if they were given.
+    /// Its camera and its light count only if they were given, and its shadow is that without `cones`.
     renderer::View view;
-    renderer::TreeOptions tree;
+    /// The rays of soft shadows are cones.
+    bool cones = false;
+    /// Of the tree; none: what suits the scene.
+    std::optional<int> tree_n, brick_m, max_resolution;
+    renderer::PoolSizes pools;
+    renderer::MarchOptions march;
+    /// Of a frame; none: until nothing is missing.
+    std::optional<double> frame_budget_ms;
     bool camera_given = false;
     bool light_given = false;
     std::optional<TransferChoice> transfer;  ///< of a volume
     int copies = 1;                          ///< of a volume, along each axis
-    int zoom = 0;                            ///< of builtin:fractal, a power of two
+    std::optional<int> steps_per_voxel;      ///< of rays through a volume
+    /// Of a volume, in densities per voxel.
+    std::optional<double> gradient_threshold;
+    int zoom = 0;  ///< of builtin:fractal, a power of two
 };
 
 /// The picture, its camera and its light.
 [[nodiscard]] OptionTable<ViewOptions> camera_table();
 /// Shadows of that light.
 [[nodiscard]] OptionTable<ViewOptions> shadow_table();
-/// Voxels and their caches.
+/// The size of voxels, and their caches.
 [[nodiscard]] OptionTable<ViewOptions> tree_table();
+/// The shape of the tree, and how rays go through it.
+[[nodiscard]] OptionTable<ViewOptions> march_table();
+/// How a frame asks for tiles and how long it may take, for `cairn render` alone.
+[[nodiscard]] OptionTable<ViewOptions> frame_table();
 /// What is shown of the voxels, and how.
 [[nodiscard]] OptionTable<ViewOptions> look_table();
 /// `--zoom`, for `cairn render` alone.
 [[nodiscard]] OptionTable<ViewOptions> zoom_table();
 
-/// The options that `cairn render` and `cairn view` share: the tables above but the zoom.
+/// The options that `cairn render` and `cairn view` share: the tables above but the two for `cairn render`.
 [[nodiscard]] OptionTable<ViewOptions> view_table();
+
+/// The shadow of the options, cones or not.
+[[nodiscard]] renderer::ShadowQuality shadow_of(const ViewOptions& options);
 
 /// The view of the options, with the scene's own light and a camera that sees the whole scene where none was
 /// given. @throws Error as renderer::check_view() does.

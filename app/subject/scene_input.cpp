@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "app/subject/volume_input.h"
 #include "app/terminal/progress.h"
 #include "app/terminal/terminal.h"
 #include "base/error.h"
+#include "renderer/open_content.h"
 #include "scenes/ground.h"
 #include "scenes/load.h"
 
@@ -33,7 +33,7 @@ int animation_called(const scenes::Scene& scene, const std::string& name) {
 }  // namespace
 
 SceneInput load_input(const SceneOptions& options, bool quiet) {
-    if (is_volume(options.scene))
+    if (renderer::content_kind(options.scene) == renderer::ContentKind::volume)
         throw Error(Fault::usage, options.scene, "this verb needs surfaces, and that is a volume",
                     "\"cairn render\", \"cairn view\" and \"cairn info\" take volumes");
     const Progress progress("loading", quiet);

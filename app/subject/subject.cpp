@@ -1,73 +1,126 @@
 #include "app/subject/subject.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
-#include "app/subject/fractal.h"
-#include "app/subject/volume_input.h"
+#include <fmt/format.h>
+
+#include "app/subject/scene_input.h"
 #include "app/terminal/progress.h"
 #include "app/terminal/terminal.h"
 #include "base/error.h"
-#include "renderer/produce/fractal_content.h"
 
 namespace cairn::app {
+namespace {
 
-Subject::Subject(const SceneOptions& scene, const ViewOptions& options, bool quiet)
-    : fractal_(is_fractal(scene)), sponge_(is_sponge(scene)) {
-    if (options.zoom != 0 && !fractal_) {
-        throw Error(Fault::usage, "--zoom", "this scene has a finest level",
-                    "use --camera, or builtin:fractal");
-    }
-    if (fractal_ || sponge_) return;
-    if (!is_volume(scene.scene)) {
-        if (options.transfer || options.copies != 1)
-            throw Error(Fault::usage, options.transfer ? "--transfer" : "--copies", "the scene is no volume",
-                        "it is for volumes only");
-        scene_ = load_input(scene, quiet);
+using renderer::ContentKind;
+
+[[noreturn]] void refuse(const std::string& option, const std::string& what, const std::string& way_out) {
+    throw Error(Fault::usage, option, what, way_out);
+}
+
+/// An option of one kind of content is no option of another kind.
+void check_kind(ContentKind kind, const SceneOptions& scene, const ViewOptions& options) {
+    if (options.zoom != 0 && kind != ContentKind::fractal)
+        refuse("--zoom", "this scene has a finest level", "use --camera, or builtin:fractal");
+    if (options.max_resolution && kind == ContentKind::fractal)
+        refuse("--max-resolution", "builtin:fractal has no finest level",
+               "leave the option out; --pixel-error makes voxels coarser");
+    if (kind == ContentKind::volume) {
+        if (scene.seconds || scene.animation || scene.scene_index)
+            refuse(scene.scene, "a volume has no moments and no scenes",
+                   "leave out --time, --animation and --scene-index");
         return;
     }
-    if (scene.seconds || scene.animation || scene.scene_index)
-        throw Error(Fault::usage, scene.scene, "a volume has no moments and no scenes",
-                    "leave out --time, --animation and --scene-index");
+    const std::pair<bool, const char*> of_volumes[] = {
+        {options.transfer.has_value(), "--transfer"},
+        {options.copies != 1, "--copies"},
+        {options.steps_per_voxel.has_value(), "--steps-per-voxel"},
+        {options.gradient_threshold.has_value(), "--gradient-threshold"}};
+    for (const auto& [is_given, option] : of_volumes)
+        if (is_given) refuse(option, "the scene is no volume", "it is for volumes only");
+}
+
+renderer::TreeOptions tree_of(const SceneOptions& scene, const ViewOptions& options) {
+    const ContentKind kind = renderer::content_kind(scene.scene);
+    renderer::TreeOptions tree = renderer::usual_tree(scene.scene);
+    tree.n = options.tree_n.value_or(tree.n);
+    const int usual_m = tree.n == 3 ? renderer::usual_tree("builtin:sponge").m : renderer::TreeOptions{}.m;
+    tree.m = options.brick_m.value_or(usual_m);
+    tree.max_resolution = options.max_resolution.value_or(tree.max_resolution);
+    tree.mips = options.view.detail.kind == renderer::LevelOfDetail::Kind::blended;
+    if (tree.max_resolution < tree.m)
+        refuse("--max-resolution", fmt::format("{} is less than a brick, {}", tree.max_resolution, tree.m),
+               "give at least as many");
+    if (kind == ContentKind::fractal) tree.max_level = renderer::deepest_level(tree.n, tree.m);
+    return tree;
+}
+
+renderer::ContentSource source_of(const SceneOptions& scene, const ViewOptions& options, bool quiet) {
+    const renderer::ContentOptions content = content_options(scene, options);
+    if (renderer::content_kind(scene.scene) == ContentKind::surface) {
+        SceneInput input = load_input(scene, quiet);
+        return {std::move(input.scene), std::move(input.snapshot), *content.tree};
+    }
     const Progress progress("loading", quiet);
-    VolumeInput input = load_volume_input(scene.scene, options.tree, options.copies);
+    renderer::ContentSource source(scene.scene, content);
     if (!quiet) {
-        for (const std::string& warning : input.warnings)
+        for (const std::string& warning : source.warnings())
             warn(warning);
     }
-    field_ = std::move(input.field);
+    return source;
 }
 
-scenes::Bounds Subject::bounds() const {
-    if (fractal_) return {glm::dvec3(-0.5), glm::dvec3(0.5)};
-    if (sponge_) return {glm::dvec3(0.0), glm::dvec3(1.0)};
-    return scene_ ? scene_->snapshot.bounds : bounds_of(*field_);
+renderer::View fractal_view(const ViewOptions& options, const renderer::TreeOptions& tree) {
+    renderer::View view = options.view;
+    view.shadow = shadow_of(options);
+    if (!options.camera_given) {
+        view.camera.eye = {0.71, 0.53, 0.62};
+        view.camera.target = {0.02, 0.01, 0.03};
+    }
+    // The middle is the low corner of a tile of every level under the root.
+    const int level_bits = renderer::TreeShape{.n = tree.n, .m = tree.m}.n_shift();
+    const int level = std::max(1, options.zoom / level_bits);
+    const std::int64_t across = std::int64_t(1) << (level_bits * level);
+    view.anchor = renderer::Tile{level, glm::i64vec3(across / 2)};
+    const double unit = std::ldexp(1.0, level_bits * level - options.zoom);
+    view.camera.eye *= unit;
+    view.camera.target *= unit;
+    view.light.position *= unit;
+    return view;
 }
+
+}  // namespace
+
+renderer::ContentOptions content_options(const SceneOptions& scene, const ViewOptions& options) {
+    check_kind(renderer::content_kind(scene.scene), scene, options);
+    renderer::ContentOptions content{
+        .tree = tree_of(scene, options),
+        .trust_paths = scene.trust_paths,
+        .copies = options.copies,
+        .transfer = options.transfer.value_or(parse_transfer(default_transfer)).points};
+    renderer::VolumeOptions& volume = content.volume;
+    volume.steps_per_voxel = options.steps_per_voxel.value_or(volume.steps_per_voxel);
+    volume.full_gradient = options.gradient_threshold.value_or(volume.full_gradient);
+    return content;
+}
+
+Subject::Subject(const SceneOptions& scene, const ViewOptions& options, bool quiet)
+    : source_(source_of(scene, options, quiet)) {}
 
 void Subject::add_figures(Report& report) const {
-    if (scene_) {
-        report.add("triangles", scene_->snapshot.triangle_count);
-    } else if (field_) {
-        report.add("voxels", json_of(field_->frame().size));
-    }
+    if (const scenes::Snapshot* const snapshot = source_.snapshot())
+        report.add("triangles", snapshot->triangle_count);
+    if (const auto voxels = source_.voxels()) report.add("voxels", json_of(*voxels));
 }
 
 renderer::View Subject::view(const ViewOptions& options) const {
-    if (fractal_) return fractal_view(options, options.zoom);
-    if (scene_) return view_of(options, scene_->snapshot);
+    if (kind() == ContentKind::fractal) return fractal_view(options, tree());
+    if (const scenes::Snapshot* const snapshot = source_.snapshot()) return view_of(options, *snapshot);
     scenes::Snapshot only_bounds;
     only_bounds.bounds = bounds();
     return view_of(options, only_bounds);
-}
-
-renderer::Renderer Subject::make_renderer(const ViewOptions& options, const gl::ShaderSource& shaders) const {
-    if (fractal_ || sponge_) {
-        const renderer::TreeOptions tree = fractal_ ? fractal_tree(options) : sponge_tree(options);
-        return {std::make_unique<renderer::FractalContent>(renderer::tree_shape_of(tree), shaders), tree,
-                shaders};
-    }
-    if (scene_) return {scene_->scene, scene_->snapshot, options.tree, shaders};
-    const TransferChoice transfer = options.transfer.value_or(parse_transfer(default_transfer));
-    return {field_, transfer.for_voxels(field_->frame().voxel_size), options.tree, {}, shaders};
 }
 
 }  // namespace cairn::app

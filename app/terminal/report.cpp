@@ -33,7 +33,10 @@ std::string label_of(std::string_view key) {
 std::string text_of(std::string_view key, const Json& value) {
     if (value.is_null()) return "none";
     if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-    if (value.is_string()) return value == "" ? "\"\"" : printable(value.get<std::string>());
+    if (value.is_string()) {
+        const std::string text = printable(value.get<std::string>());
+        return text.empty() ? "\"\"" : text;
+    }
     if (value.is_number() && (ends_in(key, "_ms") || key == "milliseconds")) {
         return fmt::format("{:.{}f} ms", value.get<double>(), value.get<double>() < 10.0 ? 2 : 1);
     }

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/terminal/option_names.h"
 #include "base/error.h"
 
 namespace cairn::app {
@@ -33,7 +34,7 @@ ExitCode report_current_exception() {
     try {
         throw;
     } catch (const Error& error) {
-        print_error(error.what(), error.way_out());
+        print_error(error.what(), with_option_names(error.way_out()));
         return exit_code(error.fault());
     } catch (const std::bad_alloc&) {
         print_error("out of memory", "choose a lower resolution, or a machine with more memory");

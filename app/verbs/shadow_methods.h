@@ -6,7 +6,8 @@
 
 #include "app/options/shadow_options.h"
 #include "app/verbs/shadow_task.h"
-#include "renderer/renderer.h"
+#include "optics/image.h"
+#include "renderer/shadow_renderer.h"
 
 /// The ways of `cairn shadow` to a shadow, and how far one is from another.
 namespace cairn::app {
@@ -23,10 +24,9 @@ struct ShadowResult {
     bool cached = false;          ///< taken from --truth-cache
 };
 
-/// Those on the GPU need a context.
-[[nodiscard]] ShadowResult shadow_by_voxels(const ShadowTask& task, const ShadowOptions& options);
-[[nodiscard]] ShadowResult shadow_by_pyramid(const ShadowTask& task, const ShadowOptions& options);
-[[nodiscard]] ShadowResult shadow_by_map(const ShadowTask& task, const ShadowOptions& options);
+/// Needs a context.
+[[nodiscard]] ShadowResult shadow_on_gpu(renderer::ShadowMethod method, const ShadowTask& task,
+                                         const ShadowOptions& options);
 
 /// By Embree's rays: also tells which pixels can be shadowed at all, because they show a receiver whose
 /// triangle faces the light's middle. The others hold -1.

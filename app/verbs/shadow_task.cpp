@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "optics/light.h"
+#include "renderer/pool/tree_options.h"
 
 namespace cairn::app {
 namespace {
@@ -57,7 +58,11 @@ optics::Light light_of(const ShadowOptions& options, const optics::Light& given,
 
 int pyramid_resolution(const ShadowOptions& options) {
     constexpr int usual = 512;
-    return options.max_resolution->count() > 0 ? options.view.tree.max_resolution : usual;
+    return options.view.max_resolution.value_or(usual);
+}
+
+int tree_resolution(const ShadowOptions& options) {
+    return options.view.max_resolution.value_or(renderer::TreeOptions{}.max_resolution);
 }
 
 ShadowTask make_shadow_task(const ShadowOptions& options) {
@@ -83,9 +88,9 @@ ShadowTask make_shadow_task(const ShadowOptions& options) {
     task.view = view_of(options.view, task.input.snapshot);
     task.view.light = light_of(options, task.view.light, task.shown.bounds);
     const bool extended = optics::has_extent(task.view.light);
-    task.view.shadow_rays = options.rays.value_or(extended ? default_soft_rays : 1);
-    task.view.shadow_cones = options.cones;
-    task.is_soft = extended && (task.view.shadow_rays > 1 || options.cones);
+    task.view.shadow.samples = options.rays.value_or(extended ? default_soft_rays : 1);
+    task.view.shadow.kind =
+        options.cones ? renderer::ShadowQuality::Kind::cones : renderer::ShadowQuality::Kind::rays;
     return task;
 }
 

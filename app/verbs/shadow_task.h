@@ -14,10 +14,10 @@ struct ShadowTask {
     scenes::NodeSelection occluders, receivers;
     scenes::Snapshot shown;  ///< of occluders and receivers
     renderer::View view;
-    bool is_soft = false;  ///< the light has an extent, and more than its middle is asked for
 };
 
-/// Voxels per side of the pyramid: --max-resolution if it was given.
+/// Voxels per side of the tree, and of the pyramid: --max-resolution if it was given.
+[[nodiscard]] int tree_resolution(const ShadowOptions& options);
 [[nodiscard]] int pyramid_resolution(const ShadowOptions& options);
 
 /// @throws Error (Fault::usage) when the options contradict each other; before anything is written.

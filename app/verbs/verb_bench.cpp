@@ -2,6 +2,7 @@
 #include <thread>
 
 #include "app/options/parse.h"
+#include "app/options/voxel_rows.h"
 #include "app/terminal/driver.h"
 #include "app/terminal/progress.h"
 #include "app/terminal/report.h"
@@ -49,6 +50,46 @@ std::vector<int> sizes_of(const std::string& text) {
     return sizes;
 }
 
+/// The options of voxels, each with whether a chart takes it.
+struct VoxelRow {
+    OptionRow<bench::VoxelOptions> row;
+    bool bench::VoxelOptionsTaken::*taken;
+};
+std::vector<VoxelRow> voxel_rows() {
+    using Voxels = bench::VoxelOptions;
+    using Taken = bench::VoxelOptionsTaken;
+    return {
+        {tree_n_row<Voxels>([](auto& voxels) -> auto& { return voxels.tree_n; }), &Taken::tree},
+        {brick_m_row<Voxels>([](auto& voxels) -> auto& { return voxels.brick_m; }), &Taken::tree},
+        {traversal_row<Voxels>([](auto& voxels) -> auto& { return voxels.traversal; }), &Taken::traversal},
+        {tile_queries_row<Voxels>([](auto& voxels) -> auto& { return voxels.tile_queries; }),
+         &Taken::tile_queries},
+        {steps_row<Voxels>([](auto& voxels) -> auto& { return voxels.steps_per_voxel; }), &Taken::volume},
+        {gradient_row<Voxels>([](auto& voxels) -> auto& { return voxels.gradient_threshold; }),
+         &Taken::volume},
+        {budget_row<Voxels>([](auto& voxels) -> auto& { return voxels.frame_budget_ms; }),
+         &Taken::frame_budget},
+    };
+}
+
+/// @throws Error (Fault::usage) for an option that the chart varies itself, or that says nothing to it.
+void check_voxel_options(const bench::ChartKind& kind, const bench::VoxelOptions& voxels) {
+    for (const VoxelRow& option : voxel_rows()) {
+        if (!option.row.print(voxels) || kind.takes.*option.taken) continue;
+        throw Error(Fault::usage, option.row.long_name(),
+                    "the chart \"" + std::string(kind.name) + "\" varies it itself, or has no use for it",
+                    "leave it out");
+    }
+}
+
+/// What was given, with the options' names as the keys.
+Json json_of_voxel_options(const bench::VoxelOptions& voxels) {
+    Json given = Json::object();
+    for (const VoxelRow& option : voxel_rows())
+        if (const auto value = option.row.print(voxels)) given[option.row.long_name().substr(2)] = *value;
+    return given;
+}
+
 void add_options(CLI::App& verb, Options& options) {
     std::string charts;
     for (const bench::ChartKind& kind : bench::charts())
@@ -75,6 +116,10 @@ void add_options(CLI::App& verb, Options& options) {
             "--truth-cache", [&options](const std::string& text) { options.what.truth_cache = text; },
             "keeps what Embree found of soft lights in this folder,\nand takes it from there")
         ->type_name("DIR");
+    OptionTable<bench::VoxelOptions> voxels;
+    for (const VoxelRow& option : voxel_rows())
+        voxels.push_back(option.row);
+    add_table(verb, voxels, options.what.voxels);
     add_driver_options(verb, options.driver);
     add_report_options(verb, options.report);
 }
@@ -102,6 +147,7 @@ Json json_of_table(const bench::Table& table) {
 
 ExitCode run(const Options& options) {
     const bench::ChartKind& kind = chart_named(options.chart);
+    check_voxel_options(kind, options.what.voxels);
     Report report(options.report);
     const Driver driver(options.driver);
     bench::Chart chart;
@@ -118,6 +164,8 @@ ExitCode run(const Options& options) {
             warn(note);
     }
     report.add("measurements", json_of_table(chart.table));
+    if (Json given = json_of_voxel_options(options.what.voxels); !given.empty())
+        report.add("voxel_options", std::move(given));
     Json files = Json::array();
     for (const std::filesystem::path& file : chart.files)
         files.push_back(file.string());
@@ -126,7 +174,7 @@ ExitCode run(const Options& options) {
     report.add("driver", driver.name());
     report.add("backend", driver.backend());
     report.finish();
-    return ExitCode::done;
+    return chart.differs ? ExitCode::differs : ExitCode::done;
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 
 #include "app/options/options.h"
 #include "app/subject/scene_input.h"
-#include "app/subject/volume_input.h"
 #include "app/terminal/report.h"
 #include "app/verbs/verbs.h"
+#include "renderer/open_content.h"
 #include "scenes/volume/volume.h"
 
 namespace cairn::app {
@@ -78,7 +78,7 @@ ExitCode run_volume(const CommonOptions& options) {
         bounds = volume.bounds();
         warnings = volume.warnings;
     } else {
-        bounds = bounds_of(*load_volume_input(options.scene.scene, {}, 1).field);
+        bounds = renderer::ContentSource(options.scene.scene).bounds();
     }
     report.add("bounds_low", json_of(bounds.low));
     report.add("bounds_high", json_of(bounds.high));
@@ -88,7 +88,8 @@ ExitCode run_volume(const CommonOptions& options) {
 }
 
 ExitCode run(const CommonOptions& options) {
-    if (is_volume(options.scene.scene)) return run_volume(options);
+    if (renderer::content_kind(options.scene.scene) == renderer::ContentKind::volume)
+        return run_volume(options);
     const SceneInput input = load_input(options.scene, options.report.quiet);
     const scenes::Scene& scene = input.scene;
     const scenes::Snapshot& snapshot = input.snapshot;

@@ -8,7 +8,8 @@
 #include <fmt/format.h>
 
 #include "app/options/view_options.h"
-#include "app/subject/fractal.h"
+#include "app/options/voxel_rows.h"
+#include "app/subject/scene_input.h"
 #include "app/subject/subject.h"
 #include "app/terminal/driver.h"
 #include "app/terminal/measure.h"
@@ -47,24 +48,63 @@ void add_options(CLI::App& verb, Options& options) {
     verb.add_option("--proxy", options.proxy,
                     "a closed mesh: only what lies inside it is shown of the\nvoxels")
         ->type_name("SCENE");
+    add_table(verb, frame_table(), options.view);
     add_table(verb, zoom_table(), options.view);
     add_common_options(verb, options.common);
 }
 
-/// The median of a few frames that find the bricks of the frame before.
-double converged_frame_ms(renderer::Renderer& renderer, const renderer::View& view, bool quiet) {
+/// Converged frames, which find the bricks of the frame before.
+struct Repeated {
+    double median_ms = 0.0;
+    renderer::FrameStatistics last;
+};
+
+Repeated repeat(renderer::Renderer& renderer, const renderer::View& view, const renderer::Request& request,
+                bool quiet) {
     const Progress progress("measuring", quiet);
+    Repeated repeated;
     std::vector<double> frames;
     double total = 0.0;
     while (frames.size() < measured_frames && total < measuring_ms) {
         renderer.forget_picture();
-        (void)renderer.render(view);
-        frames.push_back(renderer.statistics().milliseconds);
+        repeated.last = renderer.render(view, request).statistics;
+        frames.push_back(repeated.last.milliseconds);
         total += frames.back();
     }
     const auto middle = frames.begin() + std::ptrdiff_t(frames.size() / 2);
     std::nth_element(frames.begin(), middle, frames.end());
-    return *middle;
+    repeated.median_ms = *middle;
+    return repeated;
+}
+
+/// How the picture was made, where the counters do not say it.
+void add_settings(const Subject& subject, const ViewOptions& options, Report& report) {
+    report.add("tree_n", subject.tree().n);
+    report.add("brick_m", subject.tree().m);
+    report.add("traversal", name_of(options.march.traversal, traversal_names()));
+    report.add("tile_query_method", name_of(options.march.tile_queries, tile_query_names()));
+    if (options.frame_budget_ms) report.add("frame_budget_ms", *options.frame_budget_ms);
+    if (subject.kind() != renderer::ContentKind::volume) return;
+    const renderer::VolumeOptions usual;
+    report.add("steps_per_voxel", options.steps_per_voxel.value_or(usual.steps_per_voxel));
+    report.add("gradient_threshold", options.gradient_threshold.value_or(usual.full_gradient));
+}
+
+void add_counters(const renderer::FrameStatistics& first, const renderer::FrameStatistics& last,
+                  Report& report) {
+    report.add("passes", first.passes);
+    report.add("converged", first.converged);
+    report.add("rays_launched", first.rays_launched);
+    report.add("tile_queries", first.tile_queries);
+    report.add("bricks_produced", first.bricks_produced);
+    report.add("bricks_evicted", first.bricks_evicted);
+    report.add("bricks_relinked", first.bricks_relinked);
+    report.add("bricks_cached", first.bricks_cached);
+    report.add("bricks_restored", first.bricks_restored);
+    report.add("bricks_resident", last.bricks_resident);
+    report.add("node_pool_bytes", first.node_pool_bytes);
+    report.add("brick_pool_bytes", first.brick_pool_bytes);
+    report.add("brick_cache_bytes", first.brick_cache_bytes);
 }
 
 /// Another scene as triangles: in its rest pose, unless it is the one that is voxelized.
@@ -106,42 +146,39 @@ ExitCode run(const Options& options) {
 
     const Driver driver(options.common.driver);
     report.add("context_ms", watch.lap_ms());
-    renderer::Renderer renderer = subject->make_renderer(options.view, options.common.driver.shaders);
+    renderer::Renderer renderer(subject->content(options.common.driver.shaders),
+                                {options.view.pools, options.view.march}, options.common.driver.shaders);
     renderer.set_mix(load_mix(options, report));
+    add_settings(*subject, options.view, report);
     subject.reset();  // the renderer has its own copy of what it needs: do not pay twice
     report.add("setup_ms", watch.lap_ms());
 
-    optics::Image image;
+    renderer::Request request;
+    if (options.view.frame_budget_ms) request.budget = renderer::Milliseconds(*options.view.frame_budget_ms);
+    renderer::Frame first;
     {
         Progress progress("rendering", quiet);
-        image = renderer.render(view, [&progress](double share) { progress.set(share); });
+        renderer::Request told = request;
+        told.progress = [&progress](double share) { progress.set(share); };
+        first = renderer.render(view, told);
     }
-    const renderer::FrameStatistics first = renderer.statistics();
-    report.add("first_frame_ms", first.milliseconds);
+    report.add("first_frame_ms", first.statistics.milliseconds);
     (void)watch.lap_ms();
-    write_png(image, output);
+    write_png(first.image, output);
     const double write_ms = watch.lap_ms();
+    renderer::FrameStatistics last = first.statistics;
     // Frames that nobody asked about are not worth their time.
     if (!quiet || options.common.report.json) {
-        report.add("frame_ms", converged_frame_ms(renderer, view, quiet));
+        const Repeated repeated = repeat(renderer, view, request, quiet);
+        report.add("frame_ms", repeated.median_ms);
+        last = repeated.last;
     }
     driver.check();
 
     report.add("write_ms", write_ms);
-    report.add("width", view.width);
-    report.add("height", view.height);
-    report.add("passes", first.passes);
-    report.add("rays_launched", first.rays_launched);
-    report.add("tile_queries", first.tile_queries);
-    report.add("bricks_produced", first.bricks_produced);
-    report.add("bricks_evicted", first.bricks_evicted);
-    report.add("bricks_relinked", first.bricks_relinked);
-    report.add("bricks_cached", first.bricks_cached);
-    report.add("bricks_restored", first.bricks_restored);
-    report.add("bricks_resident", renderer.statistics().bricks_resident);
-    report.add("node_pool_bytes", first.node_pool_bytes);
-    report.add("brick_pool_bytes", first.brick_pool_bytes);
-    report.add("brick_cache_bytes", first.brick_cache_bytes);
+    report.add("width", view.size.width);
+    report.add("height", view.size.height);
+    add_counters(first.statistics, last, report);
     report.add("peak_rss_bytes", peak_rss_bytes());
     report.add("driver", driver.name());
     report.add("backend", driver.backend());

@@ -17,18 +17,19 @@
 namespace cairn::app {
 namespace {
 
-ShadowResult shadow_by(ShadowMethod method, const ShadowTask& task, const ShadowOptions& options) {
+/// None: Embree, which needs no OpenGL.
+std::optional<renderer::ShadowMethod> gpu_method(ShadowMethod method) {
     switch (method) {
         case ShadowMethod::voxel:
-            return shadow_by_voxels(task, options);
+            return renderer::ShadowMethod::voxel;
         case ShadowMethod::pyramid:
-            return shadow_by_pyramid(task, options);
+            return renderer::ShadowMethod::pyramid;
         case ShadowMethod::soft_shadow_map:
-            return shadow_by_map(task, options);
+            return renderer::ShadowMethod::soft_shadow_map;
         case ShadowMethod::embree:
             break;
     }
-    return shadow_by_embree(task, options);
+    return std::nullopt;
 }
 
 void add_comparison(Report& report, const ShadowTask& task, const ShadowOptions& options,
@@ -64,19 +65,20 @@ ExitCode run(const ShadowOptions& options) {
     report.add("method", name_of(method, shadow_method_names()));
     report.add("load_ms", watch.lap_ms());
     report.add("triangles", task.shown.triangle_count);
-    report.add("width", task.view.width);
-    report.add("height", task.view.height);
-    // Rays of Embree need no OpenGL.
+    report.add("width", task.view.size.width);
+    report.add("height", task.view.size.height);
     std::optional<Driver> driver;
-    if (method != ShadowMethod::embree) driver.emplace(options.common.driver);
-    const ShadowResult shadow = shadow_by(method, task, options);
+    const std::optional<renderer::ShadowMethod> on_gpu = gpu_method(method);
+    if (on_gpu) driver.emplace(options.common.driver);
+    const ShadowResult shadow =
+        on_gpu ? shadow_on_gpu(*on_gpu, task, options) : shadow_by_embree(task, options);
     if (driver) driver->check();
     if (method == ShadowMethod::voxel) {
-        report.add("rays", task.is_soft ? task.view.shadow_rays : 1);
-        report.add("max_resolution", options.view.tree.max_resolution);
+        report.add("rays", renderer::shadow_samples(task.view));
+        report.add("max_resolution", tree_resolution(options));
     }
     if (method == ShadowMethod::pyramid) {
-        report.add("rays", task.is_soft ? task.view.shadow_rays : 1);
+        report.add("rays", renderer::shadow_samples(task.view));
         report.add("max_resolution", pyramid_resolution(options));
         report.add("voxelize_ms", shadow.voxelize_ms);
         report.add("pyramid_ms", shadow.pyramid_ms);

@@ -14,7 +14,6 @@
 
 #include "app/options/parse.h"
 #include "app/options/view_options.h"
-#include "app/subject/fractal.h"
 #include "app/subject/subject.h"
 #include "app/terminal/driver.h"
 #include "app/terminal/measure.h"
@@ -27,6 +26,7 @@
 #include "app/viewer/overlay.h"
 #include "app/viewer/viewer.h"
 #include "gl/window.h"
+#include "renderer/open_content.h"
 
 namespace cairn::app {
 namespace {
@@ -36,10 +36,7 @@ constexpr int max_frames = 1 << 30;
 constexpr double longest_wait = 5.0;
 
 struct Options {
-    Options() {
-        view.view.width = 1024;
-        view.view.height = 768;
-    }
+    Options() { view.view.size = {1024, 768}; }
     ReportOptions report;
     SceneOptions scene;
     DriverOptions driver;
@@ -151,9 +148,9 @@ private:
         std::string text = viewer_.statistics_line();
         if (view.show != renderer::Show::surface)
             text += view.show == renderer::Show::levels ? "   tree levels" : "   bricks";
-        if (view.shadow == renderer::Shadow::none) text += "   no shadows";
-        if (view.pixel_error != renderer::View{}.pixel_error)
-            text += fmt::format("   voxels of {:.2g} pixels", view.pixel_error);
+        if (view.shadow.kind == renderer::ShadowQuality::Kind::none) text += "   no shadows";
+        if (view.detail.pixel_error != renderer::LevelOfDetail{}.pixel_error)
+            text += fmt::format("   voxels of {:.2g} pixels", view.detail.pixel_error);
         if (viewer_.flying()) text += fmt::format("   flying, {:.3g} a second", viewer_.fly_speed());
         return text;
     }
@@ -177,8 +174,8 @@ private:
     void tell_convergence() {
         const bool settled = viewer_.settled();
         if (settled && !was_settled_) {
-            log(fmt::format("{} {}x{}", viewer_.converged() ? "converged" : "settled", viewer_.view().width,
-                            viewer_.view().height));
+            log(fmt::format("{} {}x{}", viewer_.converged() ? "converged" : "settled",
+                            viewer_.view().size.width, viewer_.view().size.height));
         }
         was_settled_ = settled;
     }
@@ -204,7 +201,7 @@ ExitCode run(const Options& options) {
     const bool quiet = options.report.quiet;
     Report report(options.report);
     report.add("scene", options.scene.scene);
-    if (is_fractal(options.scene)) {
+    if (renderer::content_kind(options.scene.scene) == renderer::ContentKind::fractal) {
         throw Error(Fault::usage, options.scene.scene, "the viewer's cameras do not reach its depth",
                     "render it: cairn render builtin:fractal --zoom K");
     }
@@ -212,8 +209,9 @@ ExitCode run(const Options& options) {
     const renderer::View view = subject->view(options.view);
     const double size = scene_size(subject->bounds());
 
-    const std::unique_ptr<gl::Window> window = gl::create_window(
-        "cairn view " + options.scene.scene + " (F1: help)", {view.width, view.height}, wants_debugging());
+    const std::unique_ptr<gl::Window> window =
+        gl::create_window("cairn view " + options.scene.scene + " (F1: help)",
+                          {view.size.width, view.size.height}, wants_debugging());
     glfwSwapInterval(1);
     // Set-up may take a while: until then the window shows the background of the scene.
     glClearColor(0.906F, 0.925F, 0.957F, 1.0F);
@@ -224,7 +222,9 @@ ExitCode run(const Options& options) {
     std::optional<Viewer> viewer;
     {
         const Progress progress("preparing", quiet);
-        renderer.emplace(subject->make_renderer(options.view, options.driver.shaders));
+        renderer.emplace(subject->content(options.driver.shaders),
+                         renderer::RendererOptions{options.view.pools, options.view.march},
+                         options.driver.shaders);
         subject.reset();  // the renderer has its own copy of what it needs
         viewer.emplace(*renderer, view, size);
         viewer->warm_up();

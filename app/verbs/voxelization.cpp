@@ -8,15 +8,22 @@
 #include "app/terminal/measure.h"
 #include "app/terminal/progress.h"
 #include "app/terminal/terminal.h"
+#include "base/error.h"
 #include "voxelizer/solid/solid_tiles.h"
 
 namespace cairn::app {
 
 void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options) {
     add_table(verb, grid_table(), options.grid);
-    add_parsed_option(
-        verb, "--method", "NAME", "conservative, slice-map, three-axis, three-axis-conservative",
-        [&options](const std::string& name) { options.method = voxelizer::method_named(name); });
+    add_parsed_option(verb, "--method", "NAME",
+                      "conservative, slice-map, three-axis, three-axis-conservative",
+                      [&options](const std::string& name) {
+                          try {
+                              options.method = voxelizer::method_named(name);
+                          } catch (const Error& error) {
+                              throw Error(error.fault(), "--method", error.what(), error.way_out());
+                          }
+                      });
     add_common_options(verb, options.common);
 }
 

@@ -19,9 +19,9 @@ int rows_at(const Pace& pace, int width) {
 }  // namespace
 
 Refinement::Refinement(const renderer::View& view) : view_(view) {
-    image_.width = view.width;
-    image_.height = view.height;
-    image_.rgba.resize(std::size_t(view.width) * std::size_t(view.height) * 4);
+    image_.width = view.size.width;
+    image_.height = view.size.height;
+    image_.rgba.resize(std::size_t(view.size.width) * std::size_t(view.size.height) * 4);
 }
 
 bool Refinement::settled() const {
@@ -35,11 +35,11 @@ bool Refinement::converged() const {
 }
 
 double Refinement::share_done() const {
-    if (view_.height == 0) return 1.0;
+    if (view_.size.height == 0) return 1.0;
     int rows = 0;
     for (const Band& band : bands_)
         rows += band.converged || band.stuck ? band.rows.count : 0;
-    return double(rows) / view_.height;
+    return double(rows) / view_.size.height;
 }
 
 /// The next rows of the first sweep, then the last band that lacks something, until nothing more can be done
@@ -47,9 +47,9 @@ double Refinement::share_done() const {
 /// From the last to the first, because the pools hold what the sweep used last. A band is cut where it would
 /// take long.
 Band& Refinement::choose(const Pace& pace) {
-    const int rows = rows_at(pace, view_.width);
+    const int rows = rows_at(pace, view_.size.width);
     if (!complete()) {
-        const int count = std::min(rows, view_.height - next_row_);
+        const int count = std::min(rows, view_.size.height - next_row_);
         bands_.push_back({{next_row_, count}});
         next_row_ += count;
         return bands_.back();
@@ -63,19 +63,20 @@ Band& Refinement::choose(const Pace& pace) {
     return *bands_.insert(last.base(), cut);
 }
 
-void Refinement::step(renderer::Renderer& renderer, Pace& pace) {
+renderer::FrameStatistics Refinement::step(renderer::Renderer& renderer, Pace& pace) {
     Band& band = choose(pace);
-    const optics::Image rows = renderer.render_rows_within(view_, band.rows, pace.aim_ms());
-    const renderer::FrameStatistics& statistics = renderer.statistics();
+    const auto [rows, statistics] =
+        renderer.render(view_, {.rows = band.rows, .budget = renderer::Milliseconds(pace.aim_ms())});
     band.converged = statistics.converged;
     note_visit(band, rows, statistics);
-    pace.learn(statistics.march_ms, double(view_.width) * band.rows.count);
+    pace.learn(statistics.march_ms, double(view_.size.width) * band.rows.count);
     put(rows, band.rows.first);
+    return statistics;
 }
 
 void Refinement::note_visit(Band& band, const optics::Image& rows,
                             const renderer::FrameStatistics& statistics) const {
-    const auto before = image_.rgba.begin() + std::ptrdiff_t(band.rows.first) * view_.width * 4;
+    const auto before = image_.rgba.begin() + std::ptrdiff_t(band.rows.first) * view_.size.width * 4;
     const bool answered =
         statistics.bricks_produced > 0 || statistics.bricks_restored > 0 || statistics.nodes_subdivided > 0;
     const bool same = std::equal(rows.rgba.begin(), rows.rgba.end(), before);
@@ -84,19 +85,21 @@ void Refinement::note_visit(Band& band, const optics::Image& rows,
     band.stuck = !band.converged && (band.idle_visits >= most_idle_visits || band.visits >= most_visits);
 }
 
-void Refinement::finish_stuck(renderer::Renderer& renderer) {
+std::optional<renderer::FrameStatistics> Refinement::finish_stuck(renderer::Renderer& renderer) {
     for (Band& band : bands_) {
         if (band.converged) continue;
-        put(renderer.render_rows(view_, band.rows), band.rows.first);
+        const renderer::Frame frame = renderer.render(view_, {.rows = band.rows});
+        put(frame.image, band.rows.first);
         band.converged = true;
         band.stuck = false;
-        return;
+        return frame.statistics;
     }
+    return std::nullopt;
 }
 
 void Refinement::put(const optics::Image& rows, int first_row) {
     std::copy(rows.rgba.begin(), rows.rgba.end(),
-              image_.rgba.begin() + std::ptrdiff_t(first_row) * view_.width * 4);
+              image_.rgba.begin() + std::ptrdiff_t(first_row) * view_.size.width * 4);
 }
 
 }  // namespace cairn::app

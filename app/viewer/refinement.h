@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "app/viewer/pace.h"
@@ -21,7 +22,7 @@ struct Band {
 /// First every row is rendered with what is there, then those are gone over that lack something.
 class Refinement {
 public:
-    Refinement() { view_.width = view_.height = 0; }  ///< nothing to do
+    Refinement() { view_.size = {0, 0}; }  ///< nothing to do
     explicit Refinement(const renderer::View& view);
 
     [[nodiscard]] const renderer::View& view() const { return view_; }
@@ -30,18 +31,19 @@ public:
     [[nodiscard]] bool empty() const { return image_.rgba.empty(); }
 
     /// Every row has been rendered once.
-    [[nodiscard]] bool complete() const { return next_row_ == view_.height; }
+    [[nodiscard]] bool complete() const { return next_row_ == view_.size.height; }
     /// Nothing is left to do, but perhaps for want of room in the pools.
     [[nodiscard]] bool settled() const;
-    /// The picture is that of Renderer::render().
+    /// The picture is that of Renderer::render() without a budget.
     [[nodiscard]] bool converged() const;
     [[nodiscard]] double share_done() const;  ///< rows that are settled, in [0, 1]
 
-    /// Renders one slice; only when it is not settled.
-    void step(renderer::Renderer& renderer, Pace& pace);
+    /// Renders one slice; only when it is not settled. @return what the slice took.
+    renderer::FrameStatistics step(renderer::Renderer& renderer, Pace& pace);
 
     /// Renders one slice that is stuck as if there were all the time: it converges whatever the pools' size.
-    void finish_stuck(renderer::Renderer& renderer);
+    /// @return what the slice took; none if no slice is stuck.
+    std::optional<renderer::FrameStatistics> finish_stuck(renderer::Renderer& renderer);
 
 private:
     void note_visit(Band& band, const optics::Image& rows, const renderer::FrameStatistics& statistics) const;

@@ -32,10 +32,10 @@ constexpr double forever = 1e9;
 
 /// The view at a share of its width and height.
 renderer::View scaled(renderer::View view, double scale) {
-    view.width =
-        std::clamp(int(std::lround(view.width * scale)), std::min(least_side, view.width), view.width);
-    view.height =
-        std::clamp(int(std::lround(view.height * scale)), std::min(least_side, view.height), view.height);
+    view.size.width = std::clamp(int(std::lround(view.size.width * scale)),
+                                 std::min(least_side, view.size.width), view.size.width);
+    view.size.height = std::clamp(int(std::lround(view.size.height * scale)),
+                                  std::min(least_side, view.size.height), view.size.height);
     return view;
 }
 
@@ -45,6 +45,9 @@ Viewer::Viewer(renderer::Renderer& renderer, const renderer::View& view, double 
     : renderer_(renderer),
       view_(view),
       first_camera_(snapped(view.camera)),
+      shadow_kind_(view.shadow.kind == renderer::ShadowQuality::Kind::none
+                       ? renderer::ShadowQuality::Kind::hard
+                       : view.shadow.kind),
       scene_size_(scene_size),
       orbit_(first_camera_, scene_size),
       fly_(first_camera_, scene_size),
@@ -61,7 +64,7 @@ void Viewer::warm_up() {
     renderer::View small = scaled(view_, 0.0);
     for (const renderer::Show show : {renderer::Show::levels, renderer::Show::surface}) {
         small.show = show;
-        (void)renderer_.render_within(small, 0.0);
+        (void)renderer_.render(small, {.budget = renderer::Milliseconds(0.0)});
     }
 }
 
@@ -72,8 +75,9 @@ void Viewer::command(Command command) {
             view_.show = renderer::Show((int(view_.show) + 1) % 3);
             break;
         case Command::toggle_shadow:
-            view_.shadow =
-                view_.shadow == renderer::Shadow::none ? renderer::Shadow::hard : renderer::Shadow::none;
+            view_.shadow.kind = view_.shadow.kind == renderer::ShadowQuality::Kind::none
+                                    ? shadow_kind_
+                                    : renderer::ShadowQuality::Kind::none;
             break;
         case Command::toggle_fly:
             if (flying_) {
@@ -89,10 +93,12 @@ void Viewer::command(Command command) {
             fly_ = FlyCamera(first_camera_, scene_size_);
             break;
         case Command::finer:
-            view_.pixel_error = std::max(view_.pixel_error / pixel_error_a_step, least_pixel_error);
+            view_.detail.pixel_error =
+                std::max(view_.detail.pixel_error / pixel_error_a_step, least_pixel_error);
             break;
         case Command::coarser:
-            view_.pixel_error = std::min(view_.pixel_error * pixel_error_a_step, largest_pixel_error);
+            view_.detail.pixel_error =
+                std::min(view_.detail.pixel_error * pixel_error_a_step, largest_pixel_error);
             break;
         case Command::take_picture:
             picture_ = growing_.view() == view_ && !changed_ ? growing_ : Refinement(view_);
@@ -128,9 +134,9 @@ void Viewer::wheel(double steps) {
 }
 
 void Viewer::resize(const glm::ivec2& size) {
-    if (size.x < 1 || size.y < 1 || size == glm::ivec2(view_.width, view_.height)) return;
-    view_.width = size.x;
-    view_.height = size.y;
+    if (size.x < 1 || size.y < 1 || size == glm::ivec2(view_.size.width, view_.size.height)) return;
+    view_.size.width = size.x;
+    view_.size.height = size.y;
     changed_ = true;
 }
 
@@ -163,12 +169,13 @@ double Viewer::rest(double now) const {
 }
 
 void Viewer::render_moving_frame() {
-    const double pixels = double(view_.width) * view_.height;
+    const double pixels = double(view_.size.width) * view_.size.height;
     const renderer::View small = scaled(view_, std::min(std::sqrt(frame_pace_.pixels() / pixels), 1.0));
-    base_ = renderer_.render_within(small, frame_aim_ms);
-    note(frame_ms_);
+    auto [image, statistics] = renderer_.render(small, {.budget = renderer::Milliseconds(frame_aim_ms)});
+    base_ = std::move(image);
+    note(frame_ms_, statistics);
     // March and production alike: what counts is when the picture is there.
-    frame_pace_.learn(renderer_.statistics().milliseconds, double(small.width) * small.height);
+    frame_pace_.learn(statistics.milliseconds, double(small.size.width) * small.size.height);
     ++base_revision_;
     growing_ = Refinement();
     ++growing_revision_;
@@ -177,12 +184,12 @@ void Viewer::render_moving_frame() {
 
 /// Time that a moving frame has left goes to the bricks of the next one.
 void Viewer::prefetch_for(renderer::View next) {
-    const double left_ms = frame_aim_ms - renderer_.statistics().milliseconds;
+    const double left_ms = frame_aim_ms - last_.milliseconds;
     const optics::Camera from = moved_from_.value_or(next.camera);
     moved_from_ = next.camera;
-    if (!renderer_.statistics().converged || left_ms < least_prefetch_ms || from == next.camera) return;
+    if (!last_.converged || left_ms < least_prefetch_ms || from == next.camera) return;
     next.camera = optics::extrapolated(from, next.camera);
-    bricks_produced_ += renderer_.prefetch(next, left_ms);
+    bricks_produced_ += renderer_.prefetch(next, renderer::Milliseconds(left_ms));
 }
 
 /// The next slice of the picture that grows; a coarse one that is whole makes room for a finer one.
@@ -192,29 +199,26 @@ void Viewer::grow() {
             base_ = growing_.image();
             ++base_revision_;
         }
-        const double scale = 2.0 * base_.width / view_.width;
+        const double scale = 2.0 * base_.width / view_.size.width;
         growing_ = Refinement(scale < nearly_full ? scaled(view_, scale) : view_);
     }
-    growing_.step(renderer_, slice_pace_);
-    note(slice_ms_);
+    note(slice_ms_, growing_.step(renderer_, slice_pace_));
     ++growing_revision_;
     looks_ahead_ = converged();
 }
 
-/// For a camera that comes nearer.
+/// For a camera that moves closer.
 void Viewer::look_ahead() {
-    const renderer::Prefetched ahead = renderer_.prefetch_finer(ahead_ms);
+    const renderer::Prefetched ahead = renderer_.prefetch_finer(renderer::Milliseconds(ahead_ms));
     looks_ahead_ = ahead.more;
     bricks_produced_ += ahead.bricks;
 }
 
 void Viewer::continue_picture() {
     if (!picture_->settled()) {
-        picture_->step(renderer_, slice_pace_);
-        note(slice_ms_);
-    } else if (!picture_->converged()) {
-        picture_->finish_stuck(renderer_);
-        note(slice_ms_);
+        note(slice_ms_, picture_->step(renderer_, slice_pace_));
+    } else if (const auto finished = picture_->finish_stuck(renderer_)) {
+        note(slice_ms_, *finished);
     }
     if (picture_->converged()) {
         taken_ = TakenPicture{picture_->view(), picture_->image()};
@@ -224,9 +228,10 @@ void Viewer::continue_picture() {
     }
 }
 
-void Viewer::note(std::vector<double>& times) {
-    times.push_back(renderer_.statistics().milliseconds);
-    bricks_produced_ += renderer_.statistics().bricks_produced;
+void Viewer::note(std::vector<double>& times, const renderer::FrameStatistics& statistics) {
+    last_ = statistics;
+    times.push_back(statistics.milliseconds);
+    bricks_produced_ += statistics.bricks_produced;
 }
 
 std::optional<TakenPicture> Viewer::take_picture() {
@@ -242,9 +247,8 @@ bool Viewer::converged() const {
 }
 
 std::string Viewer::statistics_line() const {
-    const renderer::FrameStatistics& now = renderer_.statistics();
     const bool is_growing = !growing_.empty();
-    const int width = is_growing ? growing_.view().width : base_.width;
+    const int width = is_growing ? growing_.view().size.width : base_.width;
     std::string state = "moving";
     if (picture_) {
         state = fmt::format("taking a picture {:.0f}%", 100.0 * picture_->share_done());
@@ -255,9 +259,9 @@ std::string Viewer::statistics_line() const {
     } else if (is_growing) {
         state = fmt::format("refining {:.0f}%", 100.0 * growing_.share_done());
     }
-    return fmt::format("{:.0f} ms   {}x{} at {:.0f}%   {} of {} bricks, {} produced   {}", now.milliseconds,
-                       view_.width, view_.height, 100.0 * width / view_.width, now.bricks_resident,
-                       now.brick_slots, bricks_produced_, state);
+    return fmt::format("{:.0f} ms   {}x{} at {:.0f}%   {} of {} bricks, {} produced   {}", last_.milliseconds,
+                       view_.size.width, view_.size.height, 100.0 * width / view_.size.width,
+                       last_.bricks_resident, last_.brick_slots, bricks_produced_, state);
 }
 
 }  // namespace cairn::app

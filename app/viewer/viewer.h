@@ -36,8 +36,8 @@ struct TakenPicture {
 ///
 /// While the view changes, whole frames are rendered with as few pixels as the time allows. When it stands
 /// still the picture grows to full resolution and refines, in slices that end soon, so that input never
-/// waits. When it has converged, what who comes nearer will need is produced as far as there is room; then
-/// the viewer rests.
+/// waits. When it has converged, what a camera that moves closer will need is produced as far as there is
+/// room; then the viewer rests.
 class Viewer {
 public:
     /// @param scene_size  the diagonal of the scene, world units, > 0.
@@ -72,7 +72,7 @@ public:
     [[nodiscard]] bool flying() const { return flying_; }
     [[nodiscard]] double fly_speed() const { return fly_.speed(); }
     [[nodiscard]] bool settled() const;    ///< the view is rendered at full size, as well as the pools allow
-    [[nodiscard]] bool converged() const;  ///< and is the picture of Renderer::render()
+    [[nodiscard]] bool converged() const;  ///< and is the picture of Renderer::render() without a budget
     [[nodiscard]] std::string statistics_line() const;
 
     /// How long each call of the renderer took, for a report.
@@ -87,11 +87,12 @@ private:
     void grow();
     void continue_picture();
     void look_ahead();
-    void note(std::vector<double>& times);
+    void note(std::vector<double>& times, const renderer::FrameStatistics& statistics);
 
     renderer::Renderer& renderer_;
     renderer::View view_;  // wanted, at full size
     optics::Camera first_camera_;
+    renderer::ShadowQuality::Kind shadow_kind_;  // where there are shadows
     double scene_size_;
     OrbitCamera orbit_;
     FlyCamera fly_;
@@ -111,6 +112,7 @@ private:
     std::optional<TakenPicture> taken_;
     std::uint64_t base_revision_ = 0;
     std::uint64_t growing_revision_ = 0;
+    renderer::FrameStatistics last_;  // of the last call of the renderer that gave a picture
     std::vector<double> frame_ms_;
     std::vector<double> slice_ms_;
     std::uint64_t bricks_produced_ = 0;

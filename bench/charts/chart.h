@@ -1,46 +1,21 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "bench/plots/table.h"
-#include "gl/shader_source.h"
+#include "bench/trials/chart.h"
 
 namespace cairn::bench {
-
-struct ChartOptions {
-    std::filesystem::path folder = ".";  ///< where the files go; made if need be
-    /// Paths and builtin:NAMEs; empty: the chart's own choice.
-    std::vector<std::string> scenes;
-    /// Where to look for the real scenes among the chart's own choice; none: they are left out.
-    std::optional<std::filesystem::path> scene_folder;
-    std::vector<int> resolutions;  ///< voxels a side, or pixels; empty: the chart's own choice
-    /// Pixels from left to right, where `resolutions` are voxels; none: the chart's own choice.
-    std::optional<int> width;
-    int runs = 7;               ///< of each contender, in turn; at least 1
-    double budget_ms = 3000.0;  ///< a contender is not run again once it has taken so long at one size
-    /// Keeps what Embree found of soft lights, which takes long; none: found anew.
-    std::optional<std::filesystem::path> truth_cache;
-    gl::ShaderSource shaders;
-    std::function<void(double)> progress;  ///< called with the share done, in [0, 1]; may be empty
-};
-
-struct Chart {
-    Table table;
-    std::vector<std::filesystem::path> files;  ///< written
-    std::vector<std::string> notes;            ///< what was left out, and why
-};
 
 /// A measurement by its name, "voxelize" for instance.
 struct ChartKind {
     std::string_view name;
     std::string_view description;
     Chart (*draw)(const ChartOptions& options);
+    /// The others it varies itself, or renders no voxels.
+    VoxelOptionsTaken takes = {};
 };
 [[nodiscard]] std::span<const ChartKind> charts();
 
@@ -85,13 +60,30 @@ struct ChartKind {
 /// Forest et al. 2009, Tables 2 and 3: shadow_rays.csv.
 [[nodiscard]] Chart chart_shadow_rays(const ChartOptions& options);
 
-/// Writes `folder`/`name`, and adds it to the chart's files.
-void write_file(Chart& chart, const std::filesystem::path& folder, const std::string& name,
-                const std::string& text);
+/// The conservative method against the exact reference, bit by bit: check.csv. Chart::differs is true if a
+/// scene differs or fails.
+[[nodiscard]] Chart chart_check(const ChartOptions& options);
 
-/// Draws the chart's table as `folder`/`name`, or notes why it cannot.
+/// Levels of detail by time, memory and error against Embree: levels.csv.
+[[nodiscard]] Chart chart_levels(const ChartOptions& options);
+
+/// Animations moved and voxelized for each frame, beside Embree's rebuilding: moving.csv.
+/// @throws Error (Fault::usage) if a scene has no animation, besides what loading and voxelizing throw.
+[[nodiscard]] Chart chart_moving(const ChartOptions& options);
+
+/// One region that holds about 2000 triangles, with the index and without: region_deep.csv.
+[[nodiscard]] Chart chart_region_deep(const ChartOptions& options);
+
+/// A grid tile by tile, in regions of 1 to 64 MiB: region_sizes.csv.
+[[nodiscard]] Chart chart_region_sizes(const ChartOptions& options);
+
+/// Names the chart's table `name`, writes it as `folder`/`name`.csv, and adds that to the chart's files.
+/// @throws Error (Fault::usage) if the folder cannot be made or written to.
+void write_table(Chart& chart, const std::filesystem::path& folder, const std::string& name);
+
+/// Draws the chart's table as `folder`/`name`.png, the table's name, or notes why it cannot.
 /// @param script_of  the gnuplot script of a table's picture, to be written there
-void write_picture(Chart& chart, const std::filesystem::path& folder, const std::string& name,
+void write_picture(Chart& chart, const std::filesystem::path& folder,
                    std::string (*script_of)(const Table&, const std::filesystem::path&));
 
 }  // namespace cairn::bench

@@ -7,10 +7,12 @@
 #include <thread>
 
 #include "bench/charts/chart.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "gl/context.h"
 #include "reference/image.h"
+#include "renderer/open_content.h"
 #include "renderer/renderer.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
@@ -34,22 +36,16 @@ struct Contender {
     std::vector<double> samples;
 };
 
-double frame_ms(renderer::Renderer& renderer, const renderer::View& view) {
-    renderer.forget_picture();
-    (void)renderer.render(view);
-    return renderer.statistics().milliseconds;
-}
-
 #ifdef CAIRN_BENCH_NANOVDB
 GridView in_voxels(const renderer::View& view, const voxelizer::Grid& grid) {
     GridView out;
-    out.width = view.width;
-    out.height = view.height;
+    out.width = view.size.width;
+    out.height = view.size.height;
     out.eye = (view.camera.eye - grid.origin) / grid.voxel_size;
     out.forward = glm::normalize(view.camera.target - view.camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(out.forward, view.camera.up));
     const double half_height = std::tan(0.5 * view.camera.yfov);
-    out.right = right * (half_height * view.width / view.height);
+    out.right = right * (half_height * view.size.width / view.size.height);
     out.up = glm::cross(right, out.forward) * half_height;
     out.towards_light = view.light.towards;
     return out;
@@ -75,8 +71,7 @@ public:
         const scenes::Scene scene = scenes::load(path);
         const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
         renderer::View view;
-        view.width = size.x;
-        view.height = size.y;
+        view.size = {size.x, size.y};
         view.camera = optics::framing_camera(snapshot.bounds, double(size.x) / size.y);
         scene_ = path;
         triangles_ = std::int64_t(snapshot.triangle_count);
@@ -89,11 +84,14 @@ public:
 private:
     void beside_embree(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                        const renderer::View& view) {
-        renderer::Renderer ours(scene, snapshot, {}, options_.shaders);
+        const VoxelOptions& voxels = options_.voxels;
+        renderer::Renderer ours(renderer::surface_content(scene, snapshot, voxels.tree(), options_.shaders),
+                                voxels.renderer(), options_.shaders);
         const reference::ImageTracer embree(scene, snapshot);
         using Rays = reference::ImageTracer::Rays;
         const auto trace = [&](Rays rays) {
-            return embree.trace(view.camera, view.light, view.width, view.height, 0, rays).milliseconds;
+            return embree.trace(view.camera, view.light, view.size.width, view.size.height, 0, rays)
+                .milliseconds;
         };
         compare(ours, view,
                 {{"embree-single", [&] { return trace(Rays::single); }, {}},
@@ -102,8 +100,9 @@ private:
 
 #ifdef CAIRN_BENCH_NANOVDB
     void beside_nanovdb(const scenes::Scene& scene, const scenes::Snapshot& snapshot, renderer::View view) {
-        view.pixel_error = always_finest;
-        renderer::Renderer ours(scene, snapshot, voxel_tree, options_.shaders);
+        view.detail.pixel_error = always_finest;
+        renderer::Renderer ours(renderer::surface_content(scene, snapshot, voxel_tree, options_.shaders),
+                                options_.voxels.renderer(), options_.shaders);
         const voxelizer::Grid grid = voxelizer::grid_around(snapshot.bounds, voxel_resolution);
         const std::unique_ptr<NanoVdbMarch> peer = nanovdb_of(scene, snapshot, grid, options_.shaders);
         const GridView rays = in_voxels(view, grid);
@@ -112,22 +111,23 @@ private:
 #endif
 
     void compare(renderer::Renderer& ours, const renderer::View& view, std::vector<Contender> peers) {
-        const double first_ms = frame_ms(ours, view);
-        const auto bricks = std::int64_t(ours.statistics().bricks_produced);
+        const renderer::FrameStatistics first = marched_frame(ours, view).statistics;
+        const auto bricks = std::int64_t(first.bricks_produced);
         std::vector<double> ours_ms;
         std::vector<std::vector<double>> ratios(peers.size());
         for (int i = 0; i < options_.runs; ++i) {
-            ours_ms.push_back(frame_ms(ours, view));
+            ours_ms.push_back(marched_frame(ours, view).statistics.milliseconds);
             for (std::size_t p = 0; p < peers.size(); ++p) {
                 peers[p].samples.push_back(peers[p].run());
                 ratios[p].push_back(ours_ms.back() / peers[p].samples.back());
             }
         }
         for (std::size_t p = 0; p < peers.size(); ++p) {
-            chart_.table.rows.push_back(
-                {scene_name(scene_), triangles_, std::int64_t(view.width), std::int64_t(view.height),
-                 peers[p].name, median(peers[p].samples), median(ours_ms), median(ratios[p]), first_ms,
-                 bricks, gl::driver_name(), std::int64_t(std::thread::hardware_concurrency())});
+            chart_.table.rows.push_back({scene_name(scene_), triangles_, std::int64_t(view.size.width),
+                                         std::int64_t(view.size.height), peers[p].name,
+                                         median(peers[p].samples), median(ours_ms), median(ratios[p]),
+                                         first.milliseconds, bricks, gl::driver_name(),
+                                         std::int64_t(std::thread::hardware_concurrency())});
         }
     }
 
@@ -163,7 +163,7 @@ Chart chart_embree(const ChartOptions& options) {
             if (options.progress) options.progress(done);
         }
     }
-    write_file(chart, options.folder, "embree.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "embree");
     return chart;
 }
 

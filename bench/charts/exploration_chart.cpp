@@ -6,7 +6,8 @@
 
 #include "bench/charts/chart.h"
 #include "bench/peers/view_tiles.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_case.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "renderer/march/march_view.h"
@@ -52,52 +53,60 @@ public:
     Explorer(const ChartOptions& options, int size, Chart& chart)
         : options_(options), size_(size), chart_(chart) {}
 
-    void explore(const Subject& subject) {
-        const renderer::View view = subject.view(size_, size_);
-        renderer::Renderer ours = subject.make({}, options_.shaders);
+    void explore(const FrameCase& frame_case) {
+        const renderer::View view = frame_case.view(size_, size_);
+        renderer::Renderer ours = make(frame_case);
         (void)ours.render(view);
-        come_nearer(subject, ours, view);
-        go_steadily(subject, at(view, nearest));
+        come_nearer(frame_case, ours, view);
+        go_steadily(frame_case, at(view, nearest));
         for (const auto& [name, share] :
              {std::pair("far", 2.0), std::pair("whole", 1.0), std::pair("near", nearest)})
-            stand(subject, name, ours, at(view, share));
+            stand(frame_case, name, ours, at(view, share));
     }
 
 private:
+    [[nodiscard]] renderer::Renderer make(const FrameCase& frame_case) const {
+        const VoxelOptions& voxels = options_.voxels;
+        return frame_case.make(voxels.tree(), options_.shaders, voxels.renderer(), voxels.volume());
+    }
+
     /// Converged frames.
-    void stand(const Subject& subject, const char* part, renderer::Renderer& ours,
+    void stand(const FrameCase& frame_case, const char* part, renderer::Renderer& ours,
                const renderer::View& view) {
+        renderer::FrameStatistics last;
         (void)ours.render(view);
         std::vector<double> ms, march_ms;
         double spent_ms = 0.0;
         for (int run = 0; run < options_.runs && spent_ms <= options_.budget_ms; ++run) {
-            ms.push_back(frame_ms(ours, view));
+            last = marched_frame(ours, view, options_.voxels.request()).statistics;
+            ms.push_back(last.milliseconds);
             spent_ms += ms.back();
-            march_ms.push_back(ours.statistics().march_ms);
+            march_ms.push_back(last.march_ms);
         }
         Figures figures;
-        figures.add(ours.statistics(), 1.0);
+        figures.add(last, 1.0);
         figures.render_ms = median(march_ms);
         figures.ms = median(ms);
-        add(subject, part, 1, figures);
+        add(frame_case, part, 1, figures);
     }
 
     /// Means over the frames; the first, into empty pools, is not one of them.
-    void come_nearer(const Subject& subject, renderer::Renderer& ours, const renderer::View& view) {
+    void come_nearer(const FrameCase& frame_case, renderer::Renderer& ours, const renderer::View& view) {
         Figures mean;
         for (int frame = 1; frame <= own_frames; ++frame) {
-            (void)ours.render(at(view, std::pow(nearest, double(frame) / own_frames)));
-            mean.add(ours.statistics(), 1.0 / own_frames);
+            const renderer::View next = at(view, std::pow(nearest, double(frame) / own_frames));
+            mean.add(ours.render(next, options_.voxels.request()).statistics, 1.0 / own_frames);
         }
-        add(subject, "exploration", own_frames, mean);
+        add(frame_case, "exploration", own_frames, mean);
     }
 
     /// Straight on, four voxels of the nearest tile a frame: the speed of Crassin et al. 2008, Figure 7. As
     /// they relax it over time, it drops at once where voxels become finer, and rises slowly.
-    void go_steadily(const Subject& subject, renderer::View view) {
-        const std::unique_ptr<renderer::Content> content = subject.content({}, options_.shaders);
-        const renderer::TreeShape shape = subject.shape({});
-        renderer::Renderer ours = subject.make({}, options_.shaders);
+    void go_steadily(const FrameCase& frame_case, renderer::View view) {
+        const std::unique_ptr<renderer::Content> content =
+            frame_case.content(options_.voxels.tree(), options_.shaders);
+        const renderer::TreeShape shape = frame_case.shape(options_.voxels.tree());
+        renderer::Renderer ours = make(frame_case);
         (void)ours.render(view);
         Figures mean;
         double step = 0.0;
@@ -109,16 +118,15 @@ private:
             const glm::dvec3 way = step * glm::normalize(view.camera.target - view.camera.eye);
             view.camera.eye += way;
             view.camera.target += way;
-            (void)ours.render(view);
-            mean.add(ours.statistics(), 1.0 / own_frames);
+            mean.add(ours.render(view, options_.voxels.request()).statistics, 1.0 / own_frames);
         }
-        add(subject, "steady", own_frames, mean);
+        add(frame_case, "steady", own_frames, mean);
     }
 
-    void add(const Subject& subject, const char* part, int frames, const Figures& f) {
-        chart_.table.rows.push_back(on_this_machine({subject.name(), std::string(part), std::int64_t(size_),
-                                                     std::int64_t(frames), f.render_ms, f.bricks_ms, f.bricks,
-                                                     f.passes, f.upload_ms, f.tree_ms, f.ms, 1000.0 / f.ms}));
+    void add(const FrameCase& frame_case, const char* part, int frames, const Figures& f) {
+        chart_.table.rows.push_back(on_this_machine(
+            {frame_case.name(), std::string(part), std::int64_t(size_), std::int64_t(frames), f.render_ms,
+             f.bricks_ms, f.bricks, f.passes, f.upload_ms, f.tree_ms, f.ms, 1000.0 / f.ms}));
     }
 
     const ChartOptions& options_;
@@ -142,14 +150,14 @@ Chart chart_exploration(const ChartOptions& options) {
         options.resolutions.empty() ? std::vector<int>{own_size} : options.resolutions;
     double done = 0.0;
     for (const std::string& scene : scenes) {
-        const Subject subject(scene);
+        const FrameCase frame_case(scene);
         for (const int size : sizes) {
-            Explorer(options, size, chart).explore(subject);
+            Explorer(options, size, chart).explore(frame_case);
             done += 1.0 / double(scenes.size() * sizes.size());
             if (options.progress) options.progress(done);
         }
     }
-    write_file(chart, options.folder, "exploration.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "exploration");
     return chart;
 }
 

@@ -10,11 +10,11 @@
 
 #include "base/error.h"
 #include "bench/charts/chart.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "reference/shadow_truth.h"
-#include "renderer/pyramid_shadow.h"
+#include "renderer/shadow_renderer.h"
 #include "scenes/ground.h"
 #include "scenes/load.h"
 
@@ -46,10 +46,10 @@ public:
         when_.animation = 0;
         voxelized_ = scenes::bounds_over_animation(scene_, when_, frames_per_second);
         scenes::add_ground(scene_, voxelized_);
+        first_ = scenes::take_snapshot(scene_, when_);
         times_ = thinned(scenes::frame_times(scene_, when_, frames_per_second),
                          std::size_t(frames_a_run) * std::size_t(runs));
-        view_.width = width;
-        view_.height = height;
+        view_.size = {width, height};
         // The ground receives shadows outside the grid too, and throws none.
         view_.camera = optics::framing_camera(voxelized_, double(width) / height);
         const double size = 2.0 * glm::length(voxelized_.high - voxelized_.low);
@@ -64,13 +64,16 @@ public:
         std::vector<float> hard, soft;
     };
 
-    [[nodiscard]] renderer::PyramidShadowRenderer make(int resolution,
-                                                       const gl::ShaderSource& shaders) const {
-        return {scene_, when_, voxelized_, {.resolution = resolution}, shaders};
+    [[nodiscard]] std::unique_ptr<renderer::ShadowRenderer> make(int resolution,
+                                                                 const gl::ShaderSource& shaders) const {
+        return renderer::make_shadow_renderer(
+            renderer::ShadowMethod::pyramid,
+            {.scene = scene_, .snapshot = first_, .motion = renderer::ShadowMotion{when_, voxelized_}},
+            {.pyramid = {.resolution = resolution}}, shaders);
     }
     [[nodiscard]] renderer::View view(int rays) const {
         renderer::View view = view_;
-        view.shadow_rays = rays;
+        view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
         return view;
     }
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
@@ -99,59 +102,62 @@ private:
 
     scenes::Scene scene_;
     scenes::When when_;
+    scenes::Snapshot first_;
     scenes::Bounds voxelized_;
     std::vector<double> times_;
     renderer::View view_;
     std::vector<Truth> truths_;
 };
 
-using Statistics = renderer::PyramidShadowStatistics;
+using renderer::ShadowTimes;
 
-double median_of(const std::vector<Statistics>& frames, double Statistics::*part) {
+double median_of(const std::vector<ShadowTimes>& frames, double ShadowTimes::*part) {
     std::vector<double> values;
     values.reserve(frames.size());
-    for (const Statistics& frame : frames)
+    for (const ShadowTimes& frame : frames)
         values.push_back(frame.*part);
     return median(std::move(values));
 }
 
+const renderer::ShadowRequest only_image = {.light = false};
+const renderer::ShadowRequest only_light = {.image = false};
+
 /// Frames at one size and count of rays, and their error.
-std::vector<Cell> measure(const MovingScene& scene, renderer::PyramidShadowRenderer& renderer, int rays,
+std::vector<Cell> measure(const MovingScene& scene, renderer::ShadowRenderer& renderer, int rays,
                           double budget_ms) {
     const renderer::View view = scene.view(rays);
     renderer.move_to(scene.times().front());
-    (void)renderer.render(view);  // the driver compiles at the first use
-    std::vector<Statistics> frames;
+    (void)renderer.render(view, only_image);  // the driver compiles at the first use
+    std::vector<ShadowTimes> frames;
     std::vector<double> processor_ms;
     double spent_ms = 0.0;
     for (const double seconds : scene.times()) {
         if (spent_ms > budget_ms) break;
         const std::clock_t processor = std::clock();
         renderer.move_to(seconds);
-        (void)renderer.render(view);
+        frames.push_back(renderer.render(view, only_image).times);
         processor_ms.push_back(1000.0 * double(std::clock() - processor) / CLOCKS_PER_SEC);
-        frames.push_back(renderer.statistics());
         spent_ms += frames.back().milliseconds;
     }
     double rmse = 0.0;
     double wrong = 0.0;
     for (const MovingScene::Truth& truth : scene.truths()) {
         renderer.move_to(truth.seconds);
-        const auto error =
-            reference::shadow_error(renderer.light_shares(view).shares, rays == 1 ? truth.hard : truth.soft);
+        const auto error = reference::shadow_error(renderer.render(view, only_light).light.shares,
+                                                   rays == 1 ? truth.hard : truth.soft);
         rmse += error.rmse() / double(scene.truths().size());
         wrong += error.disagreement() / double(scene.truths().size());
     }
     return {std::int64_t(rays),
             std::int64_t(frames.size()),
-            median_of(frames, &Statistics::move_ms),
-            median_of(frames, &Statistics::voxelize_ms),
-            median_of(frames, &Statistics::pyramid_ms),
-            median_of(frames, &Statistics::raster_ms),
-            median_of(frames, &Statistics::trace_ms),
-            median_of(frames, &Statistics::milliseconds),
+            median_of(frames, &ShadowTimes::move_ms),
+            median_of(frames, &ShadowTimes::voxelize_ms),
+            median_of(frames, &ShadowTimes::pyramid_ms),
+            median_of(frames, &ShadowTimes::raster_ms),
+            median_of(frames, &ShadowTimes::trace_ms),
+            median_of(frames, &ShadowTimes::milliseconds),
             median(processor_ms),
-            std::int64_t(renderer.statistics().pyramid_bytes),
+            std::int64_t(frames.back().pyramid_bytes),
             std::int64_t(scene.truths().size()),
             rmse,
             wrong};
@@ -180,10 +186,10 @@ Chart chart_moving_shadow(const ChartOptions& options) {
     for (const std::string& path : paths) {
         const MovingScene scene(path, options.runs);
         for (const int resolution : resolutions) {
-            renderer::PyramidShadowRenderer renderer = scene.make(resolution, options.shaders);
+            const auto renderer = scene.make(resolution, options.shaders);
             for (const int rays : ray_counts) {
                 std::vector<Cell> row{scene_name(path), scene.triangles(), std::int64_t(resolution)};
-                for (Cell& cell : measure(scene, renderer, rays, options.budget_ms))
+                for (Cell& cell : measure(scene, *renderer, rays, options.budget_ms))
                     row.push_back(std::move(cell));
                 chart.table.rows.push_back(on_this_machine(std::move(row)));
             }
@@ -191,7 +197,7 @@ Chart chart_moving_shadow(const ChartOptions& options) {
             if (options.progress) options.progress(done);
         }
     }
-    write_file(chart, options.folder, "moving_shadow.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "moving_shadow");
     return chart;
 }
 

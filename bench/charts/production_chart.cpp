@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "bench/charts/chart.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_case.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 
@@ -13,12 +14,14 @@ namespace {
 constexpr int own_size = 512;
 
 /// Each run begins with empty pools.
-std::vector<Cell> measure(const Subject& subject, int size, const ChartOptions& options) {
+std::vector<Cell> measure(const FrameCase& frame_case, int size, const ChartOptions& options) {
     std::vector<double> first_ms, produce_ms, tree_ms, upload_ms, brick_ms;
-    std::vector<Entrant> last;
+    std::vector<FrameContender> last;
     for (int run = 0; run < options.runs; ++run) {
         last.clear();
-        last.emplace_back(subject.make({}, options.shaders), subject.view(size, size));
+        last.emplace_back(frame_case.make(options.voxels.tree(), options.shaders, options.voxels.renderer(),
+                                          options.voxels.volume()),
+                          frame_case.view(size, size));
         const renderer::FrameStatistics& first = last.back().first;
         first_ms.push_back(first.milliseconds);
         produce_ms.push_back(first.produce_ms);
@@ -30,7 +33,7 @@ std::vector<Cell> measure(const Subject& subject, int size, const ChartOptions& 
     measure_in_turn(last, 1, options.budget_ms);
     const renderer::FrameStatistics& first = last.back().first;
     const auto used = double(std::max<std::uint64_t>(last.back().converged.bricks_used, 1));
-    return on_this_machine({subject.name(), subject.triangles(), std::int64_t(size), median(first_ms),
+    return on_this_machine({frame_case.name(), frame_case.triangles(), std::int64_t(size), median(first_ms),
                             median(produce_ms), median(tree_ms), median(upload_ms), median(brick_ms),
                             std::int64_t(first.bricks_produced), std::int64_t(first.constant_tiles),
                             std::int64_t(last.back().converged.bricks_used),
@@ -56,14 +59,14 @@ Chart chart_production(const ChartOptions& options) {
         options.resolutions.empty() ? std::vector<int>{own_size} : options.resolutions;
     double done = 0.0;
     for (const std::string& scene : scenes) {
-        const Subject subject(scene);
+        const FrameCase frame_case(scene);
         for (const int size : sizes) {
-            chart.table.rows.push_back(measure(subject, size, options));
+            chart.table.rows.push_back(measure(frame_case, size, options));
             done += 1.0 / double(scenes.size() * sizes.size());
             if (options.progress) options.progress(done);
         }
     }
-    write_file(chart, options.folder, "production.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "production");
     return chart;
 }
 

@@ -2,51 +2,55 @@
 #include <memory>
 
 #include "bench/charts/chart.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_case.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/samples.h"
 
 namespace cairn::bench {
 namespace {
 
 /// With these, every power of 4 times 32 is a resolution of the tree itself.
-constexpr renderer::TreeOptions tree{.n = 4, .m = 32, .brick_pool_bytes = 128U << 20U};
+constexpr renderer::TreeOptions tree{.n = 4, .m = 32};
+constexpr std::size_t pool_bytes = std::size_t(128) << 20U;
 constexpr int picture = 512;
 /// A second view through a narrow lens from the same place, whose pixels see voxels so much finer.
 constexpr double narrowed = 16.0;
 
 using Renderers = std::vector<std::shared_ptr<renderer::Renderer>>;
 
-Renderers renderers_of(const Subject& subject, const std::vector<int>& resolutions,
-                       const gl::ShaderSource& shaders) {
+Renderers renderers_of(const FrameCase& frame_case, const std::vector<int>& resolutions,
+                       const ChartOptions& options) {
     Renderers made;
     for (const int resolution : resolutions) {
         renderer::TreeOptions finer = tree;
         finer.max_resolution = resolution;
-        made.push_back(std::make_shared<renderer::Renderer>(subject.make(finer, shaders)));
+        made.push_back(std::make_shared<renderer::Renderer>(frame_case.make(
+            finer, options.shaders, options.voxels.renderer({.pools = {.brick_bytes = pool_bytes}}),
+            options.voxels.volume())));
     }
     return made;
 }
 
-void measure(const Subject& subject, const Renderers& renderers, const std::vector<int>& resolutions,
+void measure(const FrameCase& frame_case, const Renderers& renderers, const std::vector<int>& resolutions,
              bool near, const ChartOptions& options, Table& table) {
-    renderer::View view = subject.view(picture, picture);
+    renderer::View view = frame_case.view(picture, picture);
     if (near) view.camera.yfov /= narrowed;
-    std::vector<Entrant> entrants;
+    std::vector<FrameContender> contenders;
     for (const auto& ours : renderers)
-        entrants.emplace_back(ours, view);
-    measure_in_turn(entrants, options.runs, options.budget_ms);
-    for (std::size_t i = 0; i < entrants.size(); ++i) {
-        const Entrant& entrant = entrants[i];
+        contenders.emplace_back(ours, view);
+    measure_in_turn(contenders, options.runs, options.budget_ms);
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+        const FrameContender& contender = contenders[i];
         std::vector<double> growth;
-        for (std::size_t run = 0; run < entrant.samples_ms.size(); ++run)
-            growth.push_back(entrant.samples_ms[run] / entrants.front().samples_ms[run]);
-        const renderer::FrameStatistics& s = entrant.converged;
+        for (std::size_t run = 0; run < contender.samples_ms.size(); ++run)
+            growth.push_back(contender.samples_ms[run] / contenders.front().samples_ms[run]);
+        const renderer::FrameStatistics& s = contender.converged;
         table.rows.push_back(
-            on_this_machine({subject.name(), std::string(near ? "near" : "whole"),
-                             std::int64_t(resolutions[i]), median(entrant.samples_ms), median(growth),
-                             entrant.first_ms, std::int64_t(entrant.first.bricks_produced),
+            on_this_machine({frame_case.name(), std::string(near ? "near" : "whole"),
+                             std::int64_t(resolutions[i]), median(contender.samples_ms), median(growth),
+                             contender.first_ms, std::int64_t(contender.first.bricks_produced),
                              std::int64_t(s.bricks_used), std::int64_t(s.bricks_resident),
-                             std::int64_t(s.brick_slots), std::int64_t(entrant.first.bricks_evicted),
+                             std::int64_t(s.brick_slots), std::int64_t(contender.first.bricks_evicted),
                              std::int64_t(s.brick_pool_bytes), std::int64_t(s.node_pool_bytes)}));
     }
 }
@@ -65,15 +69,15 @@ Chart chart_resolution(const ChartOptions& options) {
         options.resolutions.empty() ? std::vector<int>{512, 2048, 8192, 32768} : options.resolutions;
     double done = 0.0;
     for (const std::string& scene : scenes) {
-        const Subject subject(scene);
-        const Renderers renderers = renderers_of(subject, resolutions, options.shaders);
+        const FrameCase frame_case(scene);
+        const Renderers renderers = renderers_of(frame_case, resolutions, options);
         for (const bool near : {false, true}) {
-            measure(subject, renderers, resolutions, near, options, chart.table);
+            measure(frame_case, renderers, resolutions, near, options, chart.table);
             done += 0.5 / double(scenes.size());
             if (options.progress) options.progress(done);
         }
     }
-    write_file(chart, options.folder, "resolution.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "resolution");
     return chart;
 }
 

@@ -9,7 +9,7 @@
 
 #include "bench/charts/chart.h"
 #include "bench/plots/shadow_plot.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/shadow_contenders.h"
 #include "bench/trials/shadow_scene.h"
@@ -30,19 +30,19 @@ struct Measured {
     RepeatedRuns runs;
 };
 
-std::vector<Measured> measure(const ShadowTrial& trial, Chart& chart,
+std::vector<Measured> measure(const ShadowCase& shadow_case, Chart& chart,
                               const std::function<void(double)>& done) {
-    const ChartOptions& options = trial.options;
+    const ChartOptions& options = shadow_case.options;
     std::vector<Measured> all;
     std::map<std::pair<std::string, std::string>, double> slow;  // seconds; 0 once it is told
-    const std::vector<ShadowContender> contenders = shadow_contenders(trial);
+    const std::vector<ShadowContender> contenders = shadow_contenders(shadow_case);
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         const std::pair line(contenders[i].method, contenders[i].setting.varied);
         if (const auto known = slow.find(line); known != slow.end()) {
             if (known->second > 0.0)
                 chart.notes.push_back(
                     fmt::format("{}, {}: the rest of \"{}\" is left out after {:.1f} s for a setting",
-                                trial.scene.name(), line.first, line.second, known->second));
+                                shadow_case.scene.name(), line.first, line.second, known->second));
             known->second = 0.0;
             continue;
         }
@@ -158,17 +158,17 @@ public:
             std::vector<float> ground_truth = truth;
             for (std::size_t i = 0; i < truth.size(); ++i)
                 if (on_ground[i] < 0.0F) ground_truth[i] = -1.0F;
-            const ShadowTrial trial{scene, width, height, is_soft, tracer, all, voxels, options_};
+            const ShadowCase shadow_case{scene, width, height, is_soft, tracer, all, voxels, options_};
             const double before = is_soft ? 0.4 : 0.0;
-            const std::vector<Measured> measured =
-                measure(trial, chart_, [&](double part) { done(before + part * (is_soft ? 0.6 : 0.4)); });
-            add_rows(trial, {"ground", std::move(ground_truth), true}, measured, truth_error);
-            add_rows(trial, {"all", std::move(truth), false}, measured, truth_error);
+            const std::vector<Measured> measured = measure(
+                shadow_case, chart_, [&](double part) { done(before + part * (is_soft ? 0.6 : 0.4)); });
+            add_rows(shadow_case, {"ground", std::move(ground_truth), true}, measured, truth_error);
+            add_rows(shadow_case, {"all", std::move(truth), false}, measured, truth_error);
         }
     }
 
 private:
-    void add_rows(const ShadowTrial& trial, const Judged& judged, const std::vector<Measured>& measured,
+    void add_rows(const ShadowCase& shadow_case, const Judged& judged, const std::vector<Measured>& measured,
                   double truth_error) {
         std::vector<Result> results;
         for (const Measured& one : measured)
@@ -176,16 +176,16 @@ private:
                 results.push_back({&one, reference::shadow_error(one.runs.shares(), judged.truth)});
         const std::array<const Result*, 2> fastest = {fastest_within_goal(results, true),
                                                       fastest_within_goal(results, false)};
-        if (trial.is_soft) tell_goal(trial, judged, fastest);
+        if (shadow_case.is_soft) tell_goal(shadow_case, judged, fastest);
         for (const Result& result : results) {
             const ShadowSetting& setting = result.measured->contender.setting;
             const reference::ShadowError& error = result.error;
-            const double theirs = trial.is_soft ? embree_ms(results, error.rmse()) : 0.0;
+            const double theirs = shadow_case.is_soft ? embree_ms(results, error.rmse()) : 0.0;
             const bool is_fastest =
-                trial.is_soft && std::find(fastest.begin(), fastest.end(), &result) != fastest.end();
+                shadow_case.is_soft && std::find(fastest.begin(), fastest.end(), &result) != fastest.end();
             const double ms = result.measured->runs.ms();
-            chart_.table.rows.push_back(on_this_machine({trial.scene.name(),
-                                                         std::string(trial.is_soft ? "soft" : "hard"),
+            chart_.table.rows.push_back(on_this_machine({shadow_case.scene.name(),
+                                                         std::string(shadow_case.is_soft ? "soft" : "hard"),
                                                          judged.receivers,
                                                          result.measured->contender.method,
                                                          setting.varied,
@@ -233,9 +233,9 @@ private:
                            result.error.rmse());
     }
 
-    void tell_goal(const ShadowTrial& trial, const Judged& judged,
+    void tell_goal(const ShadowCase& shadow_case, const Judged& judged,
                    const std::array<const Result*, 2>& fastest) {
-        const std::string where = fmt::format("{}, {}, RMSE {} at most: ", trial.scene.name(),
+        const std::string where = fmt::format("{}, {}, RMSE {} at most: ", shadow_case.scene.name(),
                                               judged.is_ground ? "ground" : "all", goal_rmse);
         if (fastest[0] == nullptr || fastest[1] == nullptr) {
             chart_.notes.push_back(where +
@@ -268,8 +268,8 @@ Chart chart_shadow(const ChartOptions& options) {
             if (options.progress) options.progress((double(i) + part) / double(scenes.size()));
         });
     }
-    write_file(chart, options.folder, "shadow.csv", csv_of(chart.table));
-    write_picture(chart, options.folder, "shadow.png", shadow_plot);
+    write_table(chart, options.folder, "shadow");
+    write_picture(chart, options.folder, shadow_plot);
     return chart;
 }
 

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "bench/charts/chart.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/shadow_runs.h"
 #include "bench/trials/shadow_scene.h"
 #include "reference/shadow_truth.h"
@@ -53,30 +53,27 @@ Cell paper_ms(std::span<const PaperRow> table, const std::string& scene, int num
     return row->ms[std::size_t(column - paper_scenes.begin())];
 }
 
-/// Through voxels of one resolution, whose preparation is kept.
-using Frames = ShadowFrames;
+/// A way through voxels of one resolution.
 struct Traversal {
     const char* name;
-    Frames (*make)(const ShadowScene& scene, int resolution, const gl::ShaderSource& shaders);
+    renderer::ShadowMethod method;
+    renderer::ColumnMask mask = renderer::ColumnMask::adaptive;
 };
+constexpr std::array traversals = {
+    Traversal{"n3-tree", renderer::ShadowMethod::voxel},
+    Traversal{"pyramid", renderer::ShadowMethod::pyramid},
+    Traversal{"pyramid-mip-mask", renderer::ShadowMethod::pyramid, renderer::ColumnMask::mip_level}};
 
-Frames n3_tree(const ShadowScene& scene, int resolution, const gl::ShaderSource& shaders) {
-    auto ours = shadowing_renderer(scene, tree_of(resolution), shaders);
-    return [ours, is_first = std::make_shared<bool>(true)](const renderer::View& view) {
-        ShadowRun run = shadow_frame(*ours, view);
-        run.from_nothing = std::exchange(*is_first, false);
-        return run;
-    };
+using Frames = std::shared_ptr<ShadowFrames>;
+Frames frames_of(const Traversal& traversal, const ShadowScene& scene, int resolution,
+                 const ChartOptions& options) {
+    return std::make_shared<ShadowFrames>(
+        traversal.method, scene,
+        renderer::ShadowOptions{.tree = tree_of(resolution),
+                                .renderer = options.voxels.renderer(),
+                                .pyramid = {.resolution = resolution, .mask = traversal.mask}},
+        options.shaders);
 }
-
-template <renderer::ColumnMask mask>
-Frames pyramid(const ShadowScene& scene, int resolution, const gl::ShaderSource& shaders) {
-    return pyramid_frames(scene, {resolution, mask}, shaders);
-}
-
-constexpr std::array traversals = {Traversal{"n3-tree", n3_tree},
-                                   Traversal{"pyramid", pyramid<renderer::ColumnMask::adaptive>},
-                                   Traversal{"pyramid-mip-mask", pyramid<renderer::ColumnMask::mip_level>}};
 
 struct Setting {
     const Traversal* traversal;
@@ -107,8 +104,8 @@ public:
         for (const Traversal& traversal : traversals) {
             add_table_2(scene, traversal, all);
             for (const int resolution : resolutions_of(table_3))
-                add(scene, {&traversal, 3, 1, resolution},
-                    traversal.make(scene, resolution, options_.shaders), all);
+                add(scene, {&traversal, 3, 1, resolution}, frames_of(traversal, scene, resolution, options_),
+                    all);
         }
         done(0.4);
         for (Measured& one : all)
@@ -130,9 +127,9 @@ private:
     void add(const ShadowScene& scene, const Setting& setting, const Frames& frames,
              std::vector<Measured>& all) const {
         renderer::View view = scene.view(width_, height_, std::max(setting.rays, 1));
-        view.pixel_error = always_finest;
-        if (setting.rays == 0) view.shadow = renderer::Shadow::none;
-        RepeatedRuns runs([frames, view] { return frames(view); });
+        view.detail.pixel_error = always_finest;
+        if (setting.rays == 0) view.shadow.kind = renderer::ShadowQuality::Kind::none;
+        RepeatedRuns runs([frames, view] { return frames->run(view); });
         runs.sweep((options_.runs + 1) / 2, 0.5 * options_.budget_ms);
         all.push_back({setting, std::move(runs)});
     }
@@ -140,7 +137,7 @@ private:
     void add_table_2(const ShadowScene& scene, const Traversal& traversal, std::vector<Measured>& all) {
         const int resolution =
             options_.resolutions.empty() ? table_2_resolution : options_.resolutions.back();
-        const Frames frames = traversal.make(scene, resolution, options_.shaders);
+        const Frames frames = frames_of(traversal, scene, resolution, options_);
         add(scene, {&traversal, 2, 0, resolution}, frames, all);
         for (const PaperRow& row : table_2) {
             add(scene, {&traversal, 2, row.number, resolution}, frames, all);
@@ -233,7 +230,7 @@ Chart chart_shadow_rays(const ChartOptions& options) {
         });
         if (options.progress) options.progress(double(i + 1) / double(scenes.size()));
     }
-    write_file(chart, options.folder, "shadow_rays.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "shadow_rays");
     return chart;
 }
 

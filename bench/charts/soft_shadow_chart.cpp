@@ -10,7 +10,7 @@
 
 #include "bench/charts/chart.h"
 #include "bench/plots/soft_shadow_plot.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 #include "bench/trials/soft_shadow_study.h"
@@ -23,11 +23,11 @@ using renderer::ShadowMesh;
 using renderer::ShadowPasses;
 using renderer::SoftShadowMap;
 
-constexpr int own_base = 128;         // texels a side of the occluder map, where it is not what varies
-constexpr int most_points = 48;       // a side
-constexpr double trial_ms = 200.0;    // no further run of a trial once it has taken so long
-constexpr double base_light = 0.5;    // wide
-constexpr double closest_gap = 0.02;  // to the light, of the way that the occluder can rise
+constexpr int own_base = 128;           // texels a side of the occluder map, where it is not what varies
+constexpr int most_points = 48;         // a side
+constexpr double contender_ms = 200.0;  // no further run of a contender once it has taken so long
+constexpr double base_light = 0.5;      // wide
+constexpr double closest_gap = 0.02;    // to the light, of the way that the occluder can rise
 
 constexpr std::array own_sizes = {16, 24, 32, 48, 64, 96, 128, 160, 200, 256, 320, 512};
 constexpr std::array own_format_sizes = {64, 128, 256, 512};
@@ -58,12 +58,12 @@ struct Plan {
 /// A placement with its truth.
 struct Case {
     Case(const ShadowOccluder& occluder, const ShadowPlacement& placement) : setting(occluder, placement) {}
-    ShadowSetting setting;
+    StudySetting setting;
     ShadowPoints points;
     std::vector<double> truth;
 };
 
-struct Trial {
+struct Contender {
     double parameter = 0.0;
     const Case* placed = nullptr;
     int occluder_size = 0;
@@ -110,63 +110,63 @@ public:
 
 private:
     void over_sizes() {
-        std::vector<Trial> trials;
+        std::vector<Contender> contenders;
         for (const int size : plan_.sizes)
-            add_ways(size, base_, size, trials);
-        measure("resolution", trials);
+            add_ways(size, base_, size, contenders);
+        measure("resolution", contenders);
     }
 
     void over_lights() {
         std::deque<Case> cases;
-        std::vector<Trial> trials;
+        std::vector<Contender> contenders;
         for (const double width : light_widths) {
             const Case& now = cases.emplace_back(placed({width, 0.0, occluder_.own_gap()}));
-            add_ways(width, now, plan_.base, trials);
+            add_ways(width, now, plan_.base, contenders);
             for (const int size : {plan_.base / 2, plan_.base * 2})
                 if (size > 0 && size <= 2048)
-                    trials.push_back({.parameter = width, .placed = &now, .occluder_size = size});
+                    contenders.push_back({.parameter = width, .placed = &now, .occluder_size = size});
         }
-        measure("light-size", trials);
+        measure("light-size", contenders);
     }
 
     void over_laterals() {
         std::deque<Case> cases;
-        std::vector<Trial> trials;
+        std::vector<Contender> contenders;
         for (const double lateral : laterals)
             add_ways(lateral, cases.emplace_back(placed({base_light, lateral, occluder_.own_gap()})),
-                     plan_.base, trials);
-        measure("lateral", trials);
+                     plan_.base, contenders);
+        measure("lateral", contenders);
     }
 
     void over_heights() {
         std::deque<Case> cases;
-        std::vector<Trial> trials;
+        std::vector<Contender> contenders;
         for (const double rise : rises) {
             const double gap = rise * (study_light_height - occluder_.height());
-            add_ways(rise, cases.emplace_back(placed({base_light, 0.0, gap})), plan_.base, trials);
+            add_ways(rise, cases.emplace_back(placed({base_light, 0.0, gap})), plan_.base, contenders);
         }
-        measure("vertical", trials);
+        measure("vertical", contenders);
     }
 
     void over_formats() {
-        std::vector<Trial> trials;
+        std::vector<Contender> contenders;
         for (const int size : plan_.format_sizes) {
             for (const ShadowFormat format :
                  {ShadowFormat::fp16, ShadowFormat::fp16_batches, ShadowFormat::fp32})
-                trials.push_back({.parameter = double(size),
-                                  .placed = &base_,
-                                  .occluder_size = size,
-                                  .passes = ShadowPasses::one,
-                                  .format = format});
+                contenders.push_back({.parameter = double(size),
+                                      .placed = &base_,
+                                      .occluder_size = size,
+                                      .passes = ShadowPasses::one,
+                                      .format = format});
         }
-        measure("format", trials);
+        measure("format", contenders);
     }
 
     /// The same shape, so the same shadow, of ever more triangles.
     void over_polygons() {
         const auto own = double(mesh_.triangle_count());
         std::deque<ShadowMesh> meshes;
-        std::vector<Trial> trials;
+        std::vector<Contender> contenders;
         int before = 0;
         for (const double count : polygon_counts) {
             const int parts = int(std::lround(std::sqrt(count / own)));
@@ -174,26 +174,26 @@ private:
             before = parts;
             const ShadowOccluder finer = occluder_.cut(parts);
             const ShadowMesh& mesh = meshes.emplace_back(finer.scene(), finer.snapshot());
-            trials.push_back({.parameter = double(mesh.triangle_count()),
-                              .placed = &base_,
-                              .occluder_size = plan_.base,
-                              .mesh = &mesh});
+            contenders.push_back({.parameter = double(mesh.triangle_count()),
+                                  .placed = &base_,
+                                  .occluder_size = plan_.base,
+                                  .mesh = &mesh});
         }
-        if (trials.empty())
-            trials.push_back({.parameter = own, .placed = &base_, .occluder_size = plan_.base});
-        measure("polygons", trials);
+        if (contenders.empty())
+            contenders.push_back({.parameter = own, .placed = &base_, .occluder_size = plan_.base});
+        measure("polygons", contenders);
     }
 
     /// One and two passes, and one pass with the window of Atty et al.
-    static void add_ways(double parameter, const Case& now, int size, std::vector<Trial>& trials) {
+    static void add_ways(double parameter, const Case& now, int size, std::vector<Contender>& contenders) {
         for (const auto& [passes, window] : {std::pair(ShadowPasses::one, StudyWindow::fitted),
                                              {ShadowPasses::two, StudyWindow::fitted},
                                              {ShadowPasses::one, StudyWindow::shared}})
-            trials.push_back({.parameter = parameter,
-                              .placed = &now,
-                              .occluder_size = size,
-                              .passes = passes,
-                              .window = window});
+            contenders.push_back({.parameter = parameter,
+                                  .placed = &now,
+                                  .occluder_size = size,
+                                  .passes = passes,
+                                  .window = window});
     }
 
     Case placed(const ShadowPlacement& placement) {
@@ -218,38 +218,40 @@ private:
     }
 
     /// All in turn, so that ratios hold when the machine's speed drifts.
-    void measure(const char* study, std::vector<Trial>& trials) {
+    void measure(const char* study, std::vector<Contender>& contenders) {
         for (int run = 0; run < plan_.runs; ++run) {
-            for (Trial& trial : trials) {
+            for (Contender& contender : contenders) {
                 double spent = 0.0;
-                for (const double ms : trial.samples_ms)
+                for (const double ms : contender.samples_ms)
                     spent += ms;
-                if (run > 0 && spent > trial_ms) continue;
-                SoftShadowMap& map = map_of(trial.occluder_size, trial.passes, trial.format);
-                const ShadowSetting& setting = trial.placed->setting;
-                map.compute(setting.light(), setting.frustum(trial.window),
-                            trial.mesh != nullptr ? *trial.mesh : mesh_, setting.floor());
-                trial.samples_ms.push_back(map.statistics().milliseconds);
+                if (run > 0 && spent > contender_ms) continue;
+                SoftShadowMap& map = map_of(contender.occluder_size, contender.passes, contender.format);
+                const StudySetting& setting = contender.placed->setting;
+                map.compute(setting.light(), setting.frustum(contender.window),
+                            contender.mesh != nullptr ? *contender.mesh : mesh_, setting.floor());
+                contender.samples_ms.push_back(map.statistics().milliseconds);
                 if (run > 0) continue;
-                trial.statistics = map.statistics();
-                trial.errors = soft_shadow_errors(map.visible(), trial.placed->points, trial.placed->truth);
+                contender.statistics = map.statistics();
+                contender.errors =
+                    soft_shadow_errors(map.visible(), contender.placed->points, contender.placed->truth);
             }
         }
-        for (const Trial& trial : trials)
-            add_row(study, trial);
+        for (const Contender& contender : contenders)
+            add_row(study, contender);
     }
 
-    void add_row(const char* study, const Trial& trial) const {
-        const ShadowMesh& mesh = trial.mesh != nullptr ? *trial.mesh : mesh_;
+    void add_row(const char* study, const Contender& contender) const {
+        const ShadowMesh& mesh = contender.mesh != nullptr ? *contender.mesh : mesh_;
         chart_.table.rows.push_back(on_this_machine(
-            {occluder_.name(), std::string(study), trial.parameter, std::int64_t(trial.occluder_size),
-             std::int64_t(plan_.receiver_size), std::int64_t(trial.passes == ShadowPasses::two ? 2 : 1),
-             std::string(name_of(trial.format)),
-             std::string(trial.window == StudyWindow::shared ? "shared" : "fitted"),
-             trial.placed->setting.placement().light_width, std::int64_t(mesh.triangle_count()),
-             trial.errors.mean, trial.errors.rmse, trial.errors.greatest, std::int64_t(trial.errors.shadowed),
-             std::int64_t(trial.errors.wrong), median(trial.samples_ms),
-             std::int64_t(trial.statistics.micro_patches), std::int64_t(trial.statistics.fragments)}));
+            {occluder_.name(), std::string(study), contender.parameter, std::int64_t(contender.occluder_size),
+             std::int64_t(plan_.receiver_size), std::int64_t(contender.passes == ShadowPasses::two ? 2 : 1),
+             std::string(name_of(contender.format)),
+             std::string(contender.window == StudyWindow::shared ? "shared" : "fitted"),
+             contender.placed->setting.placement().light_width, std::int64_t(mesh.triangle_count()),
+             contender.errors.mean, contender.errors.rmse, contender.errors.greatest,
+             std::int64_t(contender.errors.shadowed), std::int64_t(contender.errors.wrong),
+             median(contender.samples_ms), std::int64_t(contender.statistics.micro_patches),
+             std::int64_t(contender.statistics.fragments)}));
     }
 
     const ShadowOccluder& occluder_;
@@ -287,8 +289,8 @@ Chart chart_soft_shadow_map(const ChartOptions& options) {
             if (options.progress) options.progress(done);
         }
     }
-    write_file(chart, options.folder, "soft_shadow_map.csv", csv_of(chart.table));
-    write_picture(chart, options.folder, "soft_shadow_map.png", soft_shadow_plot);
+    write_table(chart, options.folder, "soft_shadow_map");
+    write_picture(chart, options.folder, soft_shadow_plot);
     return chart;
 }
 

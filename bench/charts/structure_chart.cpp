@@ -10,8 +10,9 @@
 #include "base/error.h"
 #include "bench/charts/chart.h"
 #include "bench/peers/regular_grid.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/samples.h"
+#include "renderer/open_content.h"
 #include "renderer/produce/made_fields.h"
 
 namespace cairn::bench {
@@ -27,10 +28,10 @@ constexpr double place_of_shapes = -0.5;
 
 renderer::View view_from(double place) {
     renderer::View view;
-    view.width = view.height = picture;
+    view.size = {picture, picture};
     view.camera.eye = glm::dvec3(0.0, 0.0, place - 0.5);
     view.camera.target = view.camera.eye + glm::dvec3(0.0, 0.0, 1.0);
-    view.shadow = renderer::Shadow::none;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
     return view;
 }
 
@@ -58,29 +59,29 @@ public:
             made.push_back(std::make_shared<renderer::Renderer>(make(4, m, traversal)));
         for (const double place : places) {
             const renderer::View view = view_from(place);
-            std::vector<Entrant> entrants;
+            std::vector<FrameContender> contenders;
             shapes_.clear();
             for (std::size_t i = 0; i < made.size(); ++i) {
                 shapes_.push_back({4, m, traversals[i]});
-                entrants.emplace_back(made[i], view);
+                contenders.emplace_back(made[i], view);
             }
-            run(entrants, view, place, "place");
+            run(contenders, view, place, "place");
         }
     }
 
     void shapes() {
         const renderer::View view = view_from(place_of_shapes);
-        std::vector<Entrant> entrants;
+        std::vector<FrameContender> contenders;
         shapes_.clear();
         for (const int n : {2, 4, 8}) {
             for (const int m : {8, 16, 32, 64}) {
                 // Without levels, N says nothing.
                 if (!fits(n, m) || (m == resolution_ && n > 2)) continue;
                 shapes_.push_back({n, m, renderer::Traversal::mini_stack});
-                entrants.emplace_back(make(n, m, renderer::Traversal::mini_stack), view);
+                contenders.emplace_back(make(n, m, renderer::Traversal::mini_stack), view);
             }
         }
-        run(entrants, view, place_of_shapes, "shape");
+        run(contenders, view, place_of_shapes, "shape");
     }
 
 private:
@@ -100,41 +101,46 @@ private:
                     "choose powers of two from 8 to 32768");
     }
     [[nodiscard]] renderer::TreeOptions options_of(int n, int m) const {
-        return {.n = n, .m = m, .max_resolution = resolution_, .brick_pool_bytes = 64U << 20U};
+        return {.n = n, .m = m, .max_resolution = resolution_};
     }
 
     [[nodiscard]] renderer::Renderer make(int n, int m, renderer::Traversal traversal) const {
-        renderer::TreeOptions options = options_of(n, m);
-        options.traversal = traversal;
         const auto field = std::make_shared<renderer::HollowSphere>(n, resolution_, inner, outer, 1.0);
         const renderer::TransferFunction transfer(
             {{0.0, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), optical_depth * resolution_}});
-        return {field, transfer, options, {.full_gradient = 0.0}, options_.shaders};
+        const VoxelOptions& voxels = options_.voxels;
+        return renderer::Renderer(
+            renderer::volume_content(field, transfer, options_of(n, m),
+                                     voxels.volume({.full_gradient = 0.0})),
+            voxels.renderer({.pools = {.brick_bytes = 64U << 20U}, .march = {.traversal = traversal}}),
+            options_.shaders);
     }
 
-    void run(std::vector<Entrant>& entrants, const renderer::View& view, double place, const char* varied) {
+    void run(std::vector<FrameContender>& contenders, const renderer::View& view, double place,
+             const char* varied) {
         RegularGrid::Result grid = grid_.march(view);
         std::vector<double> grid_ms;
         double spent_ms = 0.0;
-        const double budget_ms = options_.budget_ms * double(entrants.size());
+        const double budget_ms = options_.budget_ms * double(contenders.size());
         for (int i = 0; i < options_.runs && spent_ms <= budget_ms; ++i) {
-            measure_in_turn(entrants, 1, options_.budget_ms);
-            for (const Entrant& entrant : entrants)
-                spent_ms += entrant.samples_ms.back();
+            measure_in_turn(contenders, 1, options_.budget_ms);
+            for (const FrameContender& contender : contenders)
+                spent_ms += contender.samples_ms.back();
             grid_ms.push_back(grid_.march(view).milliseconds);
         }
         const double ms = median(grid_ms);
         add(varied, place, "regular-grid", Cell{}, Cell{}, Cell{}, ms, 1.0, 0.0);
-        for (std::size_t i = 0; i < entrants.size(); ++i) {
+        for (std::size_t i = 0; i < contenders.size(); ++i) {
             const Shape& shape = shapes_[i];
             std::vector<double> ratios;
             for (std::size_t r = 0; r < grid_ms.size(); ++r)
-                ratios.push_back(grid_ms[r] / entrants[i].samples_ms[r]);
+                ratios.push_back(grid_ms[r] / contenders[i].samples_ms[r]);
             constexpr std::array names = {"restart", "stackless", "mini-stack"};
             add(varied, place, names[std::size_t(shape.traversal)], std::int64_t(shape.n),
                 std::int64_t(shape.m),
                 std::int64_t(renderer::tree_shape_of(options_of(shape.n, shape.m)).max_level),
-                median(entrants[i].samples_ms), median(ratios), difference(entrants[i].image, grid.alpha));
+                median(contenders[i].samples_ms), median(ratios),
+                difference(contenders[i].image, grid.alpha));
         }
     }
 
@@ -149,7 +155,7 @@ private:
     int resolution_;
     Chart& chart_;
     RegularGrid grid_;
-    std::vector<Shape> shapes_;  // of the entrants
+    std::vector<Shape> shapes_;  // of the contenders
 };
 
 }  // namespace
@@ -181,7 +187,7 @@ Chart chart_structure(const ChartOptions& options) {
         done += 0.5 / double(resolutions.size());
         if (options.progress) options.progress(done);
     }
-    write_file(chart, options.folder, "structure.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "structure");
     return chart;
 }
 

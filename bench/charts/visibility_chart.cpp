@@ -7,7 +7,8 @@
 #include "base/error.h"
 #include "bench/charts/chart.h"
 #include "bench/peers/occlusion_queries.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_case.h"
+#include "bench/trials/frame_contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
 
@@ -44,11 +45,12 @@ renderer::View through(const scenes::Bounds& bounds, renderer::View view) {
 
 class Comparison {
 public:
-    Comparison(const ChartOptions& options, const Subject& subject, int size, Chart& chart)
-        : options_(options), subject_(subject), size_(size), chart_(chart) {}
+    Comparison(const ChartOptions& options, const FrameCase& frame_case, int size, Chart& chart)
+        : options_(options), case_(frame_case), size_(size), chart_(chart) {}
 
     void compare(const char* name, renderer::View view) {
-        view.shadow = renderer::Shadow::none;  // who tests boxes from the eye knows nothing of the light
+        view.shadow.kind =
+            renderer::ShadowQuality::Kind::none;  // who tests boxes from the eye knows nothing of the light
         pool_bytes_ = bytes_for_frustum(view);
         auto queries = [&](bool overlapped) {
             return [=, this] { return of(bricks(view)->by_queries({.overlapped = overlapped})); };
@@ -65,17 +67,19 @@ public:
 
 private:
     [[nodiscard]] Outcome by_rays(const renderer::View& view) const {
-        Entrant entrant(subject_.make(tree(), options_.shaders), view);
-        const renderer::FrameStatistics first = entrant.first;
-        (void)frame_ms(*entrant.renderer, view);
-        return {first.bricks_produced, entrant.renderer->statistics().bricks_used, 0, 0, first.passes,
-                first.milliseconds};
+        const FrameContender contender(
+            case_.make(tree(), options_.shaders,
+                       options_.voxels.renderer({.pools = {.brick_bytes = pool_bytes_}})),
+            view);
+        const renderer::FrameStatistics& first = contender.first;
+        const renderer::FrameStatistics last = marched_frame(*contender.renderer, view).statistics;
+        return {first.bricks_produced, last.bricks_used, 0, 0, first.passes, first.milliseconds};
     }
 
     [[nodiscard]] std::unique_ptr<VisibleBricks> bricks(const renderer::View& view) const {
         const renderer::TreeOptions options = tree();
-        return std::make_unique<VisibleBricks>(subject_.content(options, options_.shaders),
-                                               subject_.shape(options), view, pool_bytes_, options_.shaders);
+        return std::make_unique<VisibleBricks>(case_.content(options, options_.shaders), case_.shape(options),
+                                               view, pool_bytes_, options_.shaders);
     }
 
     [[nodiscard]] static Outcome of(const Visibility& found) {
@@ -83,16 +87,12 @@ private:
                 found.queries,         found.batches,     found.milliseconds};
     }
 
-    [[nodiscard]] renderer::TreeOptions tree() const {
-        renderer::TreeOptions options = subject_.fitted({});
-        options.brick_pool_bytes = pool_bytes_;
-        return options;
-    }
+    [[nodiscard]] renderer::TreeOptions tree() const { return case_.fitted(options_.voxels.tree()); }
 
     /// A pool for all that could be produced, if there can be one; no larger, since drivers clear them.
     [[nodiscard]] std::size_t bytes_for_frustum(const renderer::View& view) const {
-        const renderer::TreeShape shape = subject_.shape({});
-        const std::unique_ptr<renderer::Content> content = subject_.content({}, options_.shaders);
+        const renderer::TreeShape shape = case_.shape(tree());
+        const std::unique_ptr<renderer::Content> content = case_.content(tree(), options_.shaders);
         const renderer::BrickPool sample(shape, content->channels(), sample_pool_bytes);
         const std::size_t slot_bytes = sample.size_bytes() / std::size_t(sample.slot_count());
         const std::size_t tiles = tiles_in_frustum(*content, shape, view);
@@ -111,19 +111,19 @@ private:
             }
         } catch (const Error& error) {
             if (error.fault() != Fault::usage) throw;
-            chart_.notes.push_back(subject_.name() + ", " + view + ", " + scheme +
+            chart_.notes.push_back(case_.name() + ", " + view + ", " + scheme +
                                    " is left out: " + error.what());
             return;
         }
         const double used = double(std::max<std::uint64_t>(last.used, 1));
         chart_.table.rows.push_back(on_this_machine(
-            {subject_.name(), std::string(view), std::string(scheme), std::int64_t(size_),
+            {case_.name(), std::string(view), std::string(scheme), std::int64_t(size_),
              std::int64_t(last.produced), std::int64_t(last.used), double(last.produced) / used,
              std::int64_t(last.missed), std::int64_t(last.queries), std::int64_t(last.passes), median(ms)}));
     }
 
     const ChartOptions& options_;
-    const Subject& subject_;
+    const FrameCase& case_;
     int size_;
     std::size_t pool_bytes_ = 0;  // for the view
     Chart& chart_;
@@ -145,21 +145,21 @@ Chart chart_visibility(const ChartOptions& options) {
         options.resolutions.empty() ? std::vector<int>{own_size} : options.resolutions;
     double done = 0.0;
     for (const std::string& scene : scenes) {
-        const Subject subject(scene);
+        const FrameCase frame_case(scene);
         for (const int size : sizes) {
-            Comparison comparison(options, subject, size, chart);
-            const renderer::View whole = subject.view(size, size);
+            Comparison comparison(options, frame_case, size, chart);
+            const renderer::View whole = frame_case.view(size, size);
             renderer::View near = whole;
             near.camera.eye = whole.camera.target + nearest * (whole.camera.eye - whole.camera.target);
             for (const auto& [name, view] : {std::pair("whole", whole), std::pair("near", near),
-                                             std::pair("through", through(subject.bounds(), whole))}) {
+                                             std::pair("through", through(frame_case.bounds(), whole))}) {
                 comparison.compare(name, view);
                 done += 1.0 / (3.0 * double(scenes.size() * sizes.size()));
                 if (options.progress) options.progress(done);
             }
         }
     }
-    write_file(chart, options.folder, "visibility.csv", csv_of(chart.table));
+    write_table(chart, options.folder, "visibility");
     return chart;
 }
 

@@ -8,9 +8,9 @@
 #include "base/error.h"
 #include "bench/charts/chart.h"
 #include "bench/plots/voxelize_plot.h"
-#include "bench/trials/contenders.h"
 #include "bench/trials/real_scenes.h"
 #include "bench/trials/samples.h"
+#include "bench/trials/voxel_contenders.h"
 #include "gl/context.h"
 #include "reference/exact_voxels.h"
 #include "scenes/load.h"
@@ -61,10 +61,10 @@ private:
     void measure(const std::string& scene, const voxelizer::Surface& surface) {
         const voxelizer::GpuSurface on_gpu = voxelizer::upload(surface);
         const voxelizer::Region region = voxelizer::whole(surface.grid);
-        const Trial trial{surface, on_gpu, region};
-        std::vector<Contender> all = contenders_.at(trial);
-        std::erase_if(all, [&](const Contender& c) { return takes_too_long(c, scene, region.size.x); });
-        const voxelizer::BitGrid truth = truth_of(trial, all);
+        const VoxelCase voxel_case{surface, on_gpu, region};
+        std::vector<VoxelContender> all = contenders_.at(voxel_case);
+        std::erase_if(all, [&](const VoxelContender& c) { return takes_too_long(c, scene, region.size.x); });
+        const voxelizer::BitGrid truth = truth_of(voxel_case, all);
         std::vector<Result> results(all.size());
         for (std::size_t i = 0; i < all.size(); ++i)
             first_run(all[i], results[i], truth, scene);
@@ -74,12 +74,13 @@ private:
                 run_again(all[i], results[i]);
         }
         for (std::size_t i = 0; i < all.size(); ++i) {
-            if (!results[i].samples_ms.empty()) add_row(scene, trial, all[i], results[i]);
+            if (!results[i].samples_ms.empty()) add_row(scene, voxel_case, all[i], results[i]);
         }
-        if (region.size.x >= smallest_pyramid) add_pyramid(scene, trial);
+        if (region.size.x >= smallest_pyramid) add_pyramid(scene, voxel_case);
     }
 
-    [[nodiscard]] bool takes_too_long(const Contender& contender, const std::string& scene, int resolution) {
+    [[nodiscard]] bool takes_too_long(const VoxelContender& contender, const std::string& scene,
+                                      int resolution) {
         const auto last = last_ms_.find(contender.name);
         if (last == last_ms_.end()) return false;
         if (last->second.second <= longest_run_ms) return false;
@@ -89,11 +90,12 @@ private:
         return true;
     }
 
-    [[nodiscard]] voxelizer::BitGrid truth_of(const Trial& trial, const std::vector<Contender>& all) {
-        const auto row_spans = std::find_if(all.begin(), all.end(),
-                                            [](const Contender& c) { return c.name == cpu_row_span_name; });
-        if (trial.region.size.x <= largest_reference || !row_spans_exact_ || row_spans == all.end())
-            return reference::exact_voxels(trial.surface, trial.region);
+    [[nodiscard]] voxelizer::BitGrid truth_of(const VoxelCase& voxel_case,
+                                              const std::vector<VoxelContender>& all) {
+        const auto row_spans = std::find_if(
+            all.begin(), all.end(), [](const VoxelContender& c) { return c.name == cpu_row_span_name; });
+        if (voxel_case.region.size.x <= largest_reference || !row_spans_exact_ || row_spans == all.end())
+            return reference::exact_voxels(voxel_case.surface, voxel_case.region);
         voxelizer::BitGrid truth;
         row_spans->run(&truth);
         return truth;
@@ -101,7 +103,7 @@ private:
 
     /// Compiles what is compiled at the first use, and compares. The time counts only where there is none to
     /// spare for a second run.
-    void first_run(const Contender& contender, Result& result, const voxelizer::BitGrid& truth,
+    void first_run(const VoxelContender& contender, Result& result, const voxelizer::BitGrid& truth,
                    const std::string& scene) {
         try {
             voxelizer::BitGrid voxels;
@@ -118,20 +120,20 @@ private:
         }
     }
 
-    void run_again(const Contender& contender, Result& result) const {
+    void run_again(const VoxelContender& contender, Result& result) const {
         const bool enough = !result.samples_ms.empty() && result.spent_ms > options_.budget_ms;
         if (result.spent_ms < 0.0 || enough) return;
         result.samples_ms.push_back(contender.run(nullptr));
         result.spent_ms += result.samples_ms.back();
     }
 
-    void add_row(const std::string& scene, const Trial& trial, const Contender& contender,
+    void add_row(const std::string& scene, const VoxelCase& voxel_case, const VoxelContender& contender,
                  const Result& result) {
         const double ms = median(result.samples_ms);
-        const int resolution = trial.region.size.x;
+        const int resolution = voxel_case.region.size.x;
         last_ms_[contender.name] = {resolution, ms};
         std::vector<Cell> row{scene, std::int64_t(resolution), contender.name,
-                              std::int64_t(trial.surface.triangle_count)};
+                              std::int64_t(voxel_case.surface.triangle_count)};
         if (result.comparison) {
             const reference::Comparison& c = *result.comparison;
             const bool exact = c.missing + c.extra == 0;
@@ -147,19 +149,19 @@ private:
         chart_.table.rows.push_back(std::move(row));
     }
 
-    void add_pyramid(const std::string& scene, const Trial& trial) {
+    void add_pyramid(const std::string& scene, const VoxelCase& voxel_case) {
         std::vector<double> samples;
-        (void)contenders_.pyramid_ms(trial);
+        (void)contenders_.pyramid_ms(voxel_case);
         for (int run = 0; run < options_.runs; ++run)
-            samples.push_back(contenders_.pyramid_ms(trial));
-        chart_.table.rows.push_back({scene, std::int64_t(trial.region.size.x), std::string("pyramid"),
-                                     std::int64_t(trial.surface.triangle_count), Cell{}, Cell{}, Cell{},
+            samples.push_back(contenders_.pyramid_ms(voxel_case));
+        chart_.table.rows.push_back({scene, std::int64_t(voxel_case.region.size.x), std::string("pyramid"),
+                                     std::int64_t(voxel_case.surface.triangle_count), Cell{}, Cell{}, Cell{},
                                      Cell{}, median(samples), threads_, driver_});
     }
 
     const ChartOptions& options_;
     Chart& chart_;
-    Contenders contenders_;
+    VoxelContenders contenders_;
     std::string driver_;
     std::int64_t threads_ = std::int64_t(std::thread::hardware_concurrency());
     std::map<std::string, std::pair<int, double>> last_ms_;  ///< of a contender: resolution, time
@@ -170,7 +172,7 @@ private:
 
 Chart chart_voxelize(const ChartOptions& options) {
     Chart chart;
-    chart.notes = Contenders::absent();
+    chart.notes = VoxelContenders::absent();
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) {
         scenes = {"builtin:knot", "builtin:spheres", "builtin:tree", "builtin:needles"};
@@ -187,8 +189,8 @@ Chart chart_voxelize(const ChartOptions& options) {
             if (options.progress) options.progress(done);
         });
     }
-    write_file(chart, options.folder, "voxelize.csv", csv_of(chart.table));
-    write_picture(chart, options.folder, "voxelize.png", voxelize_plot);
+    write_table(chart, options.folder, "voxelize");
+    write_picture(chart, options.folder, voxelize_plot);
     return chart;
 }
 

@@ -19,10 +19,10 @@ namespace {
 
 constexpr std::size_t node_pool_bytes = std::size_t(32) << 20U;
 
-renderer::MarchKind saturating() {
-    renderer::MarchKind kind;
-    kind.primary = "bench/saturate.comp.glsl";
-    return kind;
+renderer::ContentProgram saturating() {
+    renderer::ContentProgram program;
+    program.primary = "bench/saturate.comp.glsl";
+    return program;
 }
 
 interop::MarchView marched_view(const renderer::View& view, const renderer::Content& content,
@@ -32,12 +32,12 @@ interop::MarchView marched_view(const renderer::View& view, const renderer::Cont
         throw Error(Fault::usage, "visibility", "a volume has no depth at which all rays end",
                     "choose a scene of surfaces");
     }
-    if (renderer::Marcher::band_rows(view.width, view.height) < view.height) {
+    if (renderer::Marcher::band_rows(view.size.width, view.size.height) < view.size.height) {
         throw Error(Fault::usage, "visibility", "the picture is too large to be marched at once",
                     "choose fewer pixels");
     }
     renderer::View primary = view;
-    primary.shadow = renderer::Shadow::none;
+    primary.shadow.kind = renderer::ShadowQuality::Kind::none;
     interop::MarchView marched = renderer::march_view(primary, content.grid(), shape, nullptr);
     marched.surface_color = content.uniform_color();
     marched.shown = SHOW_SURFACE;
@@ -56,40 +56,35 @@ std::size_t tiles_in_frustum(renderer::Content& content, const renderer::TreeSha
 VisibleBricks::VisibleBricks(std::unique_ptr<renderer::Content> content, const renderer::TreeShape& shape,
                              const renderer::View& view, std::size_t brick_pool_bytes,
                              const gl::ShaderSource& shaders)
-    : content_(std::move(content)),
-      view_(marched_view(view, *content_, shape)),
+    : view_(marched_view(view, *content, shape)),
+      cache_(std::move(content), {node_pool_bytes, brick_pool_bytes}),
       test_(view_, shape),
-      pool_(shape, content_->channels(), brick_pool_bytes),
-      tree_(shape, pool_.slot_count(), node_pool_bytes, content_->oracle().child_mask(renderer::Tile{})),
-      saturate_(shape, content_->has_color(), {}, shaders, saturating()),
-      picture_(shape, content_->has_color(), {}, shaders),
+      saturate_(shape, cache_.content().has_color(), {}, shaders, saturating()),
+      picture_(shape, cache_.content().has_color(), {}, shaders),
       boxes_(view_, shaders) {
     draw();  // once, so that no shader is compiled while the clock runs
 }
 
 void VisibleBricks::begin() {
-    tiles_ = list_tiles(tree_, content_->oracle(), test_);
-    tree_.upload();
+    tiles_ = list_tiles(cache_.tree(), cache_.content().oracle(), test_);
+    cache_.upload();
     result_.tiles_in_frustum = tiles_.size();
-    tree_.begin_round(++round_, std::vector<std::uint32_t>(std::size_t(pool_.slot_count()), 0));
+    round_ = round_.next();
+    cache_.begin_round(round_, std::vector<std::uint32_t>(std::size_t(cache_.pool().slot_count()), 0));
 }
 
 void VisibleBricks::load(Tiles tiles) {
     if (tiles.empty()) return;
-    std::vector<renderer::BrickRequest> requests;
-    for (const ViewTile& tile : tiles) {
-        const std::optional<int> slot = tree_.add_brick(tile.entry);
-        if (!slot) {
-            throw Error(Fault::usage, "brick pool", "it does not hold all bricks that are to be produced",
-                        "choose fewer pixels");
-        }
-        requests.push_back({tree_.tile(tile.entry), *slot});
+    std::vector<renderer::TileQuery> queries;
+    queries.reserve(tiles.size());
+    for (const ViewTile& tile : tiles)
+        queries.push_back({tile.entry, renderer::QueryKind::brick});
+    if (cache_.answer(queries).bricks < tiles.size()) {
+        throw Error(Fault::usage, "brick pool", "it does not hold all bricks that are to be produced",
+                    "choose fewer pixels");
     }
-    const std::vector<renderer::Produced> found = content_->producer().produce(requests, pool_);
-    for (std::size_t i = 0; i < found.size(); ++i)
-        if (found[i].constant) tree_.set_constant(tiles[i].entry, found[i].mean);
-    tree_.upload();
-    result_.bricks_produced += requests.size();
+    cache_.upload();
+    result_.bricks_produced += tiles.size();
     ++result_.batches;
 }
 
@@ -99,12 +94,18 @@ void VisibleBricks::load_and_draw(Tiles tiles) {
     if (!tiles.empty()) draw();
 }
 
+/// Rounds of the marchers alone: bricks stay as they are, for one decision needs no room.
+renderer::PassResult VisibleBricks::march(renderer::Marcher& marcher, PassKind kind) {
+    round_ = round_.next();
+    return marcher.run_pass(round_, cache_.tree(), cache_.pool(), kind);
+}
+
 /// Marches the picture through what is there, for the depths where its rays end.
 void VisibleBricks::draw() {
     interop::MarchView view = view_;
     view.background_pixel = 0;  // rays get through where nothing is
-    saturate_.begin_frame(view, tree_, pool_, false);
-    while (!saturate_.run_pass(++round_, tree_, pool_, PassKind::stand_in).done()) {
+    saturate_.begin_frame(view, cache_.tree(), cache_.pool(), false);
+    while (!march(saturate_, PassKind::stand_in).done()) {
     }
     const std::vector<std::uint8_t> bytes = saturate_.read_image();
     std::vector<float> inverse_depths(bytes.size() / sizeof(float));
@@ -115,7 +116,7 @@ void VisibleBricks::draw() {
 void VisibleBricks::test(Tiles tiles) {
     std::vector<renderer::Box> boxes;
     for (const ViewTile& tile : tiles)
-        boxes.push_back(test_.box_of(tree_.tile(tile.entry)));
+        boxes.push_back(test_.box_of(cache_.tree().tile(tile.entry)));
     result_.queries += boxes_.begin(boxes);
 }
 
@@ -129,16 +130,16 @@ std::vector<ViewTile> VisibleBricks::visible_of(Tiles tested) const {
 
 /// The picture, and what its rays read and miss: the check that nothing visible was left out.
 void VisibleBricks::show() {
-    picture_.begin_frame(view_, tree_, pool_, false);
+    picture_.begin_frame(view_, cache_.tree(), cache_.pool(), false);
     renderer::PassResult pass;
     do {
-        pass = picture_.run_pass(++round_, tree_, pool_);
+        pass = march(picture_, PassKind::patient);
     } while (!pass.done() && pass.queries.empty());
     result_.missed = pass.queries.size();
     for (const std::uint32_t stamp : pass.brick_stamps)
         result_.bricks_used += stamp != 0 ? 1 : 0;
     while (!pass.done())
-        pass = picture_.run_pass(++round_, tree_, pool_, PassKind::stand_in);
+        pass = march(picture_, PassKind::stand_in);
     result_.image = {view_.width, view_.height, picture_.read_image()};
 }
 

@@ -8,11 +8,13 @@
 #include "bench/peers/box_tests.h"
 #include "bench/peers/view_tiles.h"
 #include "gl/shader_source.h"
+#include "optics/image.h"
 #include "renderer/march/marcher.h"
-#include "renderer/pool/brick_pool.h"
-#include "renderer/pool/tree.h"
+#include "renderer/pool/round.h"
+#include "renderer/pool/tree_shape.h"
 #include "renderer/produce/content.h"
-#include "renderer/renderer.h"
+#include "renderer/produce/tile_cache.h"
+#include "renderer/view/view.h"
 #include "shaders/interop/march.h"
 
 namespace cairn::bench {
@@ -75,17 +77,16 @@ private:
     void test(Tiles tiles);
     [[nodiscard]] std::vector<ViewTile> visible_of(Tiles tested) const;
     void show();
+    renderer::PassResult march(renderer::Marcher& marcher, renderer::PassKind kind);
 
-    std::unique_ptr<renderer::Content> content_;
-    interop::MarchView view_;
+    interop::MarchView view_;  // checked before anything is made of the content
+    renderer::TileCache cache_;
     ViewTest test_;
-    renderer::BrickPool pool_;
-    renderer::Tree tree_;
     renderer::Marcher saturate_;
     renderer::Marcher picture_;
     BoxTests boxes_;
     std::vector<ViewTile> tiles_;
-    std::uint32_t round_ = 1;
+    renderer::Round round_{1};
     Visibility result_;
 };
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <glad/gl.h>
 #include <glm/glm.hpp>
 
 #include "gl/buffer.h"

@@ -94,7 +94,7 @@ RegularGrid::RegularGrid(const renderer::Field& field, double extinction)
 }
 
 RegularGrid::Result RegularGrid::march(const renderer::View& view) const {
-    const std::size_t pixels = std::size_t(view.width) * std::size_t(view.height);
+    const std::size_t pixels = std::size_t(view.size.width) * std::size_t(view.size.height);
     const gl::Buffer picture(pixels * sizeof(float), "picture");
     const double side = frame_.voxel_size * double(frame_.size.x);
     const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
@@ -105,15 +105,15 @@ RegularGrid::Result RegularGrid::march(const renderer::View& view) const {
     program_.use();
     program_.set("eye", glm::vec3((view.camera.eye - frame_.origin) / side));
     program_.set("forward", glm::vec3(forward));
-    program_.set("right", glm::vec3(right * (half_height * view.width / view.height)));
+    program_.set("right", glm::vec3(right * (half_height * view.size.width / view.size.height)));
     program_.set("up", glm::vec3(glm::cross(right, forward) * half_height));
-    program_.set("size", glm::ivec2(view.width, view.height));
+    program_.set("size", glm::ivec2(view.size.width, view.size.height));
     program_.set("voxels", int(frame_.size.x));
     program_.set("extinction", float(extinction_ * side));
     glBindTextureUnit(0, densities_.id());
     picture.bind_storage(0);
-    glDispatchCompute((unsigned(view.width) + group_side - 1) / group_side,
-                      (unsigned(view.height) + group_side - 1) / group_side, 1);
+    glDispatchCompute((unsigned(view.size.width) + group_side - 1) / group_side,
+                      (unsigned(view.size.height) + group_side - 1) / group_side, 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glFinish();
     Result result;

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include <glad/gl.h>
+
 #include "gl/buffer.h"
 #include "gl/handle.h"
 #include "gl/program.h"

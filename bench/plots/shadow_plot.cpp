@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/plots/plot_style.h"
+#include "bench/plots/panel.h"
 
 namespace cairn::bench {
 namespace {
@@ -49,52 +49,59 @@ constexpr std::array<Panel, 4> panels = {{{"hard", "ground", "hard light, on the
                                           {"soft", "ground", "soft light, on the ground"},
                                           {"soft", "all", "soft light, on all"}}};
 
-template <typename T>
-std::size_t index_in(std::vector<T>& list, const T& value) {
-    const auto found = std::find(list.begin(), list.end(), value);
-    if (found != list.end()) return std::size_t(found - list.begin());
-    list.push_back(value);
-    return list.size() - 1;
+/// What a label at a point says.
+std::string setting_of(const Row& row) {
+    const auto whole = [&](const char* name) {
+        return row.is_empty(name) ? std::string() : std::to_string(row.whole(name));
+    };
+    const std::string& varied = row.text("varied");
+    if (varied.starts_with("resolution")) return whole("resolution") + "³";
+    if (varied == "taps") return whole("kernel") + "²";
+    if (varied == "format") return row.text("format");
+    for (const char* name : {"rays", "samples", "map_size"})
+        if (const std::string value = whole(name); !value.empty()) return value;
+    return {};
 }
 
-class Plot {
+class ShadowPlot {
 public:
-    explicit Plot(const Table& table) : table_(table) {
-        for (const std::vector<Cell>& row : table.rows) {
-            row_ = &row;
-            const std::string light = text("light");
-            const Point point{text("scene"),
+    explicit ShadowPlot(const Table& table) : machine_(machine_of(table)) {
+        for (const Row& row : rows_of(table)) {
+            const std::string& light = row.text("light");
+            const std::pair line(row.text("method"), row.text("varied"));
+            const Point point{row.text("scene"),
                               light,
-                              text("receivers"),
-                              series(),
-                              setting(),
-                              number("ms"),
-                              number(light == "hard" ? "hard_disagreement" : "rmse")};
-            (void)index_in(scenes_, point.scene);
+                              row.text("receivers"),
+                              line.first + line.second,
+                              setting_of(row),
+                              row.number("ms"),
+                              row.number(light == "hard" ? "hard_disagreement" : "rmse")};
+            add_once(series_, line);
+            add_once(scenes_, point.scene);
             points_.push_back(point);
-            driver_ = text("driver");
-            threads_ = std::get<std::int64_t>(cell("threads"));
         }
     }
 
     [[nodiscard]] std::string script(const std::filesystem::path& picture) const {
         const int key_rows = (int(series_.size()) + 4) / 5;
         const int foot = 70 + 24 * key_rows;
-        const int height = 90 + foot + 470 * int(scenes_.size());
-        std::string out = fmt::format(
-            "set terminal pngcairo noenhanced size 2200,{} font \"sans,11\" background \"#ffffff\"\n"
-            "set output {}\n",
-            height, quoted(picture.string()));
+        const PanelGrid grid{.rows = int(scenes_.size()),
+                             .columns = int(panels.size()),
+                             .width = 2200,
+                             .height = 90 + foot + 470 * int(scenes_.size()),
+                             .font = 11,
+                             .left = 0.035,
+                             .right = 0.99,
+                             .foot = foot,
+                             .row_gap = 85,
+                             .column_gap = 0.035};
+        std::string out = open_picture(grid, picture) + open_panels(grid);
         out +=
-            fmt::format("set multiplot layout {},4 margins 0.035,0.99,{:.4f},{:.4f} spacing 0.035,{:.4f}\n",
-                        scenes_.size(), double(foot) / height, 1.0 - 90.0 / height, 85.0 / height);
-        out +=
-            label(1, "Shadows: time against error; down and to the left is better", 16, 1.0 - 22.0 / height);
-        out += label(2,
-                     fmt::format("{}, {} threads. Ring: no other is faster and more accurate. A point on the "
-                                 "bottom is exact",
-                                 driver_, threads_),
-                     11, 1.0 - 46.0 / height);
+            label({1, "Shadows: time against error; down and to the left is better", 16, grid.from_top(22)});
+        out += label({2,
+                      machine_.words() +
+                          ". Ring: no other is faster and more accurate. A point on the bottom is exact",
+                      11, grid.from_top(46)});
         out +=
             "set logscale xy\nset format x \"%g\"\nset format y \"%g\"\nset grid lc \"#e8e8e8\" lt 1\n"
             "set border lc \"#888888\"\nset tics nomirror\n"
@@ -102,42 +109,10 @@ public:
         for (const std::string& scene : scenes_)
             for (const Panel& panel : panels)
                 out += drawn(scene, panel);
-        return out + key(double(foot - 55) / height, key_rows) + "unset multiplot\n";
+        return out + key(grid.from_bottom(foot - 55), key_rows) + "unset multiplot\n";
     }
 
 private:
-    [[nodiscard]] const Cell& cell(const char* name) const {
-        const auto found = std::find(table_.columns.begin(), table_.columns.end(), name);
-        return (*row_)[std::size_t(found - table_.columns.begin())];
-    }
-    [[nodiscard]] std::string text(const char* name) const { return std::get<std::string>(cell(name)); }
-    [[nodiscard]] double number(const char* name) const { return std::get<double>(cell(name)); }
-
-    std::string series() {
-        const std::pair line(text("method"), text("varied"));
-        (void)index_in(series_, line);
-        return line.first + line.second;
-    }
-    /// What a label at a point says.
-    [[nodiscard]] std::string setting() const {
-        const auto whole = [&](const char* name) {
-            const Cell& value = cell(name);
-            return value.index() == 0 ? std::string() : std::to_string(std::get<std::int64_t>(value));
-        };
-        const std::string varied = text("varied");
-        if (varied.starts_with("resolution")) return whole("resolution") + "³";
-        if (varied == "taps") return whole("kernel") + "²";
-        if (varied == "format") return text("format");
-        for (const char* name : {"rays", "samples", "map_size"})
-            if (const std::string value = whole(name); !value.empty()) return value;
-        return {};
-    }
-
-    static std::string label(int number, const std::string& text, int size, double height) {
-        return fmt::format("set label {} {} at screen 0.5,{:.4f} center font \"sans,{}\"\n", number,
-                           quoted(text), height, size);
-    }
-
     /// Lines of a method differ by their points.
     [[nodiscard]] Style style_of(std::size_t series) const {
         const std::string& method = series_[series].first;
@@ -163,8 +138,7 @@ private:
         std::vector<Point> front;
         for (const Point& point : points) {
             const bool is_beaten = std::any_of(points.begin(), points.end(), [&](const Point& other) {
-                return other.ms <= point.ms && other.error <= point.error &&
-                       (other.ms < point.ms || other.error < point.error);
+                return beats({other.ms, other.error}, {point.ms, point.error});
             });
             if (!is_beaten) front.push_back(point);
         }
@@ -190,17 +164,17 @@ private:
         const auto place = [&](const Point& point) {
             return fmt::format("{:.6g} {:.6g}", point.ms, std::max(point.error, bottom));
         };
-        std::string blocks = "$front << EOD\n";
+        std::string lines;
         for (const Point& point : front_of(points))
-            blocks += fmt::format("{} {}\n", place(point), quoted(point.setting));
-        blocks += "EOD\n";
+            lines += fmt::format("{} {}\n", place(point), quoted(point.setting));
+        std::string blocks = data_block("$front", lines);
         std::string plots = "plot $front using 1:2 with lines lw 5 lc \"#e0e0e0\" notitle";
         for (std::size_t s = 0; s < series_.size(); ++s) {
-            std::string block;
+            lines.clear();
             for (const Point& point : points)
-                if (point.series == series_[s].first + series_[s].second) block += place(point) + "\n";
-            if (block.empty()) continue;
-            blocks += fmt::format("$s{} << EOD\n{}EOD\n", s, block);
+                if (point.series == series_[s].first + series_[s].second) lines += place(point) + "\n";
+            if (lines.empty()) continue;
+            blocks += data_block(fmt::format("$s{}", s), lines);
             const Style style = style_of(s);
             plots +=
                 fmt::format(", $s{} using 1:2 with linespoints pt {} ps 1 lw 1.3 dt {} lc \"{}\" notitle", s,
@@ -213,8 +187,7 @@ private:
         out += fmt::format("set title {} offset 0,-0.6\nset ylabel {} offset 1.5,0\n",
                            quoted(fmt::format("{}: {}", scene, panel.title)),
                            quoted(std::string(panel.light) == "hard" ? "pixels on the wrong side" : "RMSE"));
-        out += fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", first / 1.4,
-                           last * 1.4, bottom, greatest * 1.3);
+        out += axis_ranges(first / 1.4, last * 1.4, bottom, greatest * 1.3);
         return out + plots + "unset label\n";
     }
 
@@ -238,19 +211,16 @@ private:
         return out + "\n";
     }
 
-    const Table& table_;
-    const std::vector<Cell>* row_ = nullptr;
     std::vector<Point> points_;
     std::vector<std::string> scenes_;
     std::vector<std::pair<std::string, std::string>> series_;
-    std::string driver_;
-    std::int64_t threads_ = 0;
+    Machine machine_;
 };
 
 }  // namespace
 
 std::string shadow_plot(const Table& table, const std::filesystem::path& picture) {
-    return Plot(table).script(picture);
+    return ShadowPlot(table).script(picture);
 }
 
 }  // namespace cairn::bench

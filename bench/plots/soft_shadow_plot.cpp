@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/plots/plot_style.h"
+#include "bench/plots/panel.h"
 
 namespace cairn::bench {
 namespace {
@@ -40,46 +40,40 @@ struct Panel {
     double power = 1.0;  ///< of the parameter, to the right
 };
 
-class Plot {
+class SoftShadowPlot {
 public:
-    explicit Plot(const Table& table) {
-        const auto column = [&](const char* name) {
-            return std::size_t(std::find(table.columns.begin(), table.columns.end(), name) -
-                               table.columns.begin());
-        };
-        for (const std::vector<Cell>& row : table.rows) {
-            const auto text = [&](const char* name) { return std::get<std::string>(row[column(name)]); };
-            const auto whole = [&](const char* name) { return std::get<std::int64_t>(row[column(name)]); };
-            const auto number = [&](const char* name) { return std::get<double>(row[column(name)]); };
-            points_.push_back({text("occluder"), text("study"), text("format"), text("window"),
-                               number("parameter"), whole("occluder_size"), whole("passes"), number("error"),
-                               number("ms")});
-            add_once(occluders_, text("occluder"));
-            if (text("study") == "light-size") add_once(light_sizes_, whole("occluder_size"));
-            driver_ = text("driver");
-            threads_ = whole("threads");
+    explicit SoftShadowPlot(const Table& table) : machine_(machine_of(table)) {
+        for (const Row& row : rows_of(table)) {
+            points_.push_back({row.text("occluder"), row.text("study"), row.text("format"),
+                               row.text("window"), row.number("parameter"), row.whole("occluder_size"),
+                               row.whole("passes"), row.number("error"), row.number("ms")});
+            add_once(occluders_, points_.back().occluder);
+            if (points_.back().study == "light-size") add_once(light_sizes_, points_.back().size);
         }
         std::sort(light_sizes_.begin(), light_sizes_.end());
     }
 
     [[nodiscard]] std::string script(const std::filesystem::path& picture) const {
-        const int height = 110 + 360 * int(occluders_.size() + 1);
-        std::string out = fmt::format(
-            "set terminal pngcairo noenhanced size 1800,{} font \"sans,11\" background \"#ffffff\"\n"
-            "set output {}\n"
-            "set multiplot layout {},4 rowsfirst margins 0.045,0.985,{:.4f},{:.4f} spacing 0.045,{:.4f}\n",
-            height, quoted(picture.string()), occluders_.size() + 1, 50.0 / height, 1.0 - 100.0 / height,
-            85.0 / height);
-        out += fmt::format(
-            "set label 1 \"Soft shadow maps: mean error over shadow and penumbra (above), and time (below)\" "
-            "at screen 0.5,{:.4f} center font \"sans,15\"\n"
-            "set label 2 {} at screen 0.5,{:.4f} center font \"sans,10\"\n"
+        const int rows = int(occluders_.size()) + 1;
+        const PanelGrid grid{.rows = rows,
+                             .columns = 4,
+                             .width = 1800,
+                             .height = 110 + 360 * rows,
+                             .font = 11,
+                             .left = 0.045,
+                             .right = 0.985,
+                             .head = 100,
+                             .foot = 50,
+                             .row_gap = 85,
+                             .column_gap = 0.045};
+        std::string out = open_picture(grid, picture) + open_panels(grid);
+        out += label({1, "Soft shadow maps: mean error over shadow and penumbra (above), and time (below)",
+                      15, grid.from_top(24)});
+        out += label({2, machine_.words() + ". Atty et al. 2005, figures 17 to 20, and 21 to 23 and 14", 10,
+                      grid.from_top(48)});
+        out +=
             "set grid lc \"#e4e4e4\" lt 1\nset border lc \"#888888\"\nset tics nomirror\n"
-            "set key top left Left reverse samplen 1.5 font \"sans,9\"\n",
-            1.0 - 24.0 / height,
-            quoted(fmt::format("{}, {} threads. Atty et al. 2005, figures 17 to 20, and 21 to 23 and 14",
-                               driver_, threads_)),
-            1.0 - 48.0 / height);
+            "set key top left Left reverse samplen 1.5 font \"sans,9\"\n";
         for (const std::string& occluder : occluders_)
             for (const Panel& panel : error_panels(occluder))
                 out += draw(panel);
@@ -168,16 +162,16 @@ private:
         std::string plots;
         double greatest = 0.0;
         for (std::size_t s = 0; s < panel.series.size(); ++s) {
-            std::string block;
+            std::string lines;
             for (const Point& point : points_) {
                 if (!panel.series[s].holds(point)) continue;
                 const double x = panel.power == 2.0 ? point.parameter * point.parameter : point.parameter;
                 const double y = panel.is_time ? point.ms : point.error;
                 greatest = std::max(greatest, y);
-                block += fmt::format("{:.6g} {:.6g}\n", x, y);
+                lines += fmt::format("{:.6g} {:.6g}\n", x, y);
             }
-            if (block.empty()) continue;
-            out += fmt::format("$s{} << EOD\n{}EOD\n", s, block);
+            if (lines.empty()) continue;
+            out += data_block(fmt::format("$s{}", s), lines);
             const PlotStyle& style = line_style(s);
             plots += fmt::format("{} $s{} using 1:2 with linespoints pt {} ps 0.9 lw 1.4 lc \"{}\" title {}",
                                  plots.empty() ? "plot" : ",", s, style.point, style.color,
@@ -195,14 +189,13 @@ private:
     std::vector<Point> points_;
     std::vector<std::string> occluders_;
     std::vector<std::int64_t> light_sizes_;
-    std::string driver_;
-    std::int64_t threads_ = 0;
+    Machine machine_;
 };
 
 }  // namespace
 
 std::string soft_shadow_plot(const Table& table, const std::filesystem::path& picture) {
-    return Plot(table).script(picture);
+    return SoftShadowPlot(table).script(picture);
 }
 
 }  // namespace cairn::bench

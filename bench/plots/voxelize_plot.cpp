@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/plots/plot_style.h"
+#include "bench/plots/panel.h"
 
 namespace cairn::bench {
 namespace {
@@ -19,26 +19,29 @@ struct Point {
     double ms = 0.0;
     double error = 0.0;
     bool has_voxels = false;
+
+    [[nodiscard]] TimeAndError measured() const { return {ms, error}; }
 };
 
-class Plot {
+class VoxelizePlot {
 public:
-    explicit Plot(const Table& table) {
-        for (const std::vector<Cell>& row : table.rows) {
-            Point point{std::get<std::string>(row[0]), int(std::get<std::int64_t>(row[1])),
-                        std::get<std::string>(row[2]), std::get<double>(row[8])};
+    explicit VoxelizePlot(const Table& table) {
+        for (const Row& row : rows_of(table)) {
+            Point point{row.text("scene"), int(row.whole("resolution")), row.text("method"),
+                        row.number("ms")};
             if (point.method == "pyramid") continue;
-            if (const auto* error = std::get_if<double>(&row[7])) {
-                point.error = *error;
+            if (!row.is_empty("error")) {
+                point.error = row.number("error");
                 point.has_voxels = true;
             }
             add_once(scenes_, point.scene);
             add_once(methods_, point.method);
             add_once(resolutions_, point.resolution);
             points_.push_back(point);
-            const auto& driver = std::get<std::string>(row[10]);
-            if (driver.find(':') == std::string::npos || driver_.empty()) driver_ = driver;
-            threads_ = std::get<std::int64_t>(row[9]);
+            // Contenders on the CPU have no driver: "none: CPU".
+            const std::string& driver = row.text("driver");
+            if (driver.find(':') == std::string::npos || machine_.driver.empty()) machine_.driver = driver;
+            machine_.threads = row.whole("threads");
         }
         std::sort(resolutions_.begin(), resolutions_.end());
         for (const std::string& method : methods_) {
@@ -53,22 +56,21 @@ public:
     [[nodiscard]] std::string script(const std::filesystem::path& picture) const {
         const int columns = scenes_.size() <= 1 ? 1 : scenes_.size() <= 4 ? 2 : 3;
         const int rows = (int(scenes_.size()) + columns - 1) / columns;
-        const int height = 230 + 440 * rows;
-        std::string out = fmt::format(
-            "set terminal pngcairo noenhanced size {},{} font \"sans,12\" background \"#ffffff\"\n"
-            "set output {}\n",
-            std::max(120 + 560 * columns, 1200), height, quoted(picture.string()));
-        out += data();
-        out +=
-            fmt::format("set multiplot layout {},{} margins 0.085,0.985,{:.4f},{:.4f} spacing 0.03,{:.4f}\n",
-                        rows, columns, 140.0 / height, 1.0 - 90.0 / height, 66.0 / height);
-        out += fmt::format("set label 1000 {} at screen 0.5,{:.4f} center font \"sans,15\"\n",
-                           quoted("Voxelization: time against error; down and to the left is better"),
-                           1.0 - 24.0 / height);
-        out += fmt::format("set label 1001 {} at screen 0.5,{:.4f} center font \"sans,10\" tc \"#555555\"\n",
-                           quoted(fmt::format("{}, {} threads", driver_, threads_)), 1.0 - 46.0 / height);
+        const PanelGrid grid{.rows = rows,
+                             .columns = columns,
+                             .width = std::max(120 + 560 * columns, 1200),
+                             .height = 230 + 440 * rows,
+                             .left = 0.085,
+                             .right = 0.985,
+                             .foot = 140,
+                             .row_gap = 66,
+                             .column_gap = 0.03};
+        std::string out = open_picture(grid, picture) + data() + open_panels(grid);
+        out += label({1000, "Voxelization: time against error; down and to the left is better", 15,
+                      grid.from_top(24)});
+        out += label({1001, machine_.words(), 10, grid.from_top(46), 0.5, "#555555"});
         out += axes();
-        out += legend(height);
+        out += legend(grid);
         for (std::size_t i = 0; i < scenes_.size(); ++i)
             out += panel(int(i), columns);
         return out + "unset multiplot\n";
@@ -109,8 +111,7 @@ private:
         if (!point.has_voxels) return false;
         return std::none_of(points_.begin(), points_.end(), [&](const Point& other) {
             return other.has_voxels && other.scene == point.scene && other.resolution == point.resolution &&
-                   other.ms <= point.ms && other.error <= point.error &&
-                   (other.ms < point.ms || other.error < point.error);
+                   beats(other.measured(), point.measured());
         });
     }
 
@@ -126,17 +127,17 @@ private:
         for (std::size_t scene = 0; scene < scenes_.size(); ++scene) {
             std::string front;
             for (std::size_t method = 0; method < methods_.size(); ++method) {
-                out += fmt::format("$d{}_{} << EOD\n", scene, method);
+                std::string lines;
                 for (const Point& p : points_) {
                     if (p.scene != scenes_[scene] || p.method != methods_[method]) continue;
                     const std::string line =
                         fmt::format("{:.6g} {:.6g} {:.3g}\n", p.ms, height(p), size_of(p.resolution));
-                    out += line;
+                    lines += line;
                     if (on_front(p)) front += line;
                 }
-                out += "EOD\n";
+                out += data_block(fmt::format("$d{}_{}", scene, method), lines);
             }
-            out += fmt::format("$front{} << EOD\n{}EOD\n", scene, front);
+            out += data_block(fmt::format("$front{}", scene), front);
         }
         return out;
     }
@@ -164,8 +165,7 @@ private:
         std::string out =
             "set logscale x\nset format x \"%g\"\nunset key\nset grid x y lc \"#e4e4e4\" lt 1\n"
             "set border lc \"#888888\"\nset tics textcolor \"#333333\" nomirror\n";
-        out += fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", fastest / 1.6,
-                           slowest * 1.6, lowest(), highest());
+        out += axis_ranges(fastest / 1.6, slowest * 1.6, lowest(), highest());
         out += fmt::format(
             "set object 1 rectangle from graph 0,first {:.6g} to graph 1,first {:.6g} "
             "fc \"#e8f4ea\" fs solid noborder behind\n",
@@ -178,7 +178,7 @@ private:
     }
 
     /// Under the panels, by hand: a key of gnuplot's belongs to one of them.
-    [[nodiscard]] std::string legend(int height_px) const {
+    [[nodiscard]] std::string legend(const PanelGrid& grid) const {
         std::string out;
         const double step = 0.96 / double(std::max<std::size_t>(methods_.size(), 1));
         for (std::size_t method = 0; method < methods_.size(); ++method) {
@@ -186,20 +186,18 @@ private:
             out += fmt::format(
                 "set label {} {} at screen {:.4f},{:.4f} left point pt {} ps 1.5 lc \"{}\" "
                 "offset character 1.2,0 font \"sans,11\"\n",
-                1100 + method, quoted(methods_[method]), 0.03 + step * double(method), 62.0 / height_px,
+                1100 + method, quoted(methods_[method]), 0.03 + step * double(method), grid.from_bottom(62),
                 style.point, style.color);
         }
         std::string sizes;
         for (const int resolution : resolutions_)
             sizes += fmt::format("{}{}", sizes.empty() ? "" : ", ", resolution);
-        out +=
-            fmt::format("set label 1200 {} at screen 0.5,{:.4f} center font \"sans,10\" tc \"#333333\"\n",
-                        quoted(fmt::format("larger points, further right along a line: {} voxels a side.   "
-                                           "Black ring: no method is both faster and nearer to the truth "
-                                           "at that resolution.   Error: (missing + extra) / true voxels",
-                                           sizes)),
-                        24.0 / height_px);
-        return out;
+        return out + label({1200,
+                            fmt::format("larger points, further right along a line: {} voxels a side.   "
+                                        "Black ring: no method is both faster and nearer to the truth at "
+                                        "that resolution.   Error: (missing + extra) / true voxels",
+                                        sizes),
+                            10, grid.from_bottom(24), 0.5, "#333333"});
     }
 
     [[nodiscard]] std::string panel(int scene, int columns) const {
@@ -227,8 +225,7 @@ private:
     std::vector<Point> points_;
     std::vector<std::string> scenes_, methods_, exact_;
     std::vector<int> resolutions_;
-    std::string driver_;
-    std::int64_t threads_ = 0;
+    Machine machine_;
     int bottom_ = 0, top_ = 1;
     double lane_ = 0.2;
 };
@@ -236,7 +233,7 @@ private:
 }  // namespace
 
 std::string voxelize_plot(const Table& table, const std::filesystem::path& picture) {
-    return Plot(table).script(picture);
+    return VoxelizePlot(table).script(picture);
 }
 
 }  // namespace cairn::bench

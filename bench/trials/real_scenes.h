@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/charts/chart.h"
+#include "bench/trials/chart.h"
 
 namespace cairn::bench {
 

@@ -8,13 +8,14 @@
 
 #include "bench/peers/pcf_shadow.h"
 #include "reference/area_light.h"
-#include "renderer/soft_shadow.h"
+#include "renderer/shadow_renderer.h"
 
 namespace cairn::bench {
 namespace {
 
 using Contenders = std::vector<ShadowContender>;
 using Clock = std::chrono::steady_clock;
+using renderer::ShadowMethod;
 using Rays = reference::ImageTracer::Rays;
 
 constexpr int own_resolution = 512;
@@ -38,30 +39,33 @@ double milliseconds_since(Clock::time_point start) {
 }
 
 /// Pools are made when they are first needed, and shared by all that goes through the same voxels.
-ShadowRun run_voxels(const ShadowTrial& trial, std::optional<int> resolution, const renderer::View& view) {
-    std::shared_ptr<renderer::Renderer>& kept = trial.voxels[resolution];
-    const bool is_first = kept == nullptr;
-    if (is_first) {
-        renderer::TreeOptions tree = resolution ? tree_of(*resolution) : renderer::TreeOptions{};
-        if (resolution) tree.brick_pool_bytes = finest_pool_bytes * std::size_t(*resolution);
-        kept = shadowing_renderer(trial.scene, tree, trial.options.shaders);
+ShadowRun run_voxels(const ShadowCase& shadow_case, std::optional<int> resolution,
+                     const renderer::View& view) {
+    std::unique_ptr<ShadowFrames>& kept = shadow_case.voxels[resolution];
+    if (!kept) {
+        renderer::ShadowOptions options{.renderer = shadow_case.options.voxels.renderer()};
+        if (resolution) {
+            options.tree = tree_of(*resolution);
+            options.renderer.pools.brick_bytes = finest_pool_bytes * std::size_t(*resolution);
+        }
+        kept = std::make_unique<ShadowFrames>(ShadowMethod::voxel, shadow_case.scene, options,
+                                              shadow_case.options.shaders);
     }
-    ShadowRun run = shadow_frame(*kept, view);
-    run.from_nothing = is_first;
-    return run;
+    return kept->run(view);
 }
 
-void add_voxel_rays(const ShadowTrial& trial, Contenders& all) {
+void add_voxel_rays(const ShadowCase& shadow_case, Contenders& all) {
     const auto add = [&](const char* varied, int rays, std::optional<int> resolution) {
-        renderer::View view = trial.scene.view(trial.width, trial.height, rays);
-        if (resolution) view.pixel_error = always_finest;
-        all.push_back({.method = "voxel-rays",
-                       .setting = {.varied = varied, .rays = rays, .resolution = resolution},
-                       .run = [&trial, resolution, view] { return run_voxels(trial, resolution, view); }});
+        renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, rays);
+        if (resolution) view.detail.pixel_error = always_finest;
+        all.push_back(
+            {.method = "voxel-rays",
+             .setting = {.varied = varied, .rays = rays, .resolution = resolution},
+             .run = [&shadow_case, resolution, view] { return run_voxels(shadow_case, resolution, view); }});
     };
     for (const int resolution : resolutions)
-        add("resolution", trial.is_soft ? own_rays : 1, resolution);
-    if (!trial.is_soft) {
+        add("resolution", shadow_case.is_soft ? own_rays : 1, resolution);
+    if (!shadow_case.is_soft) {
         add("rays, by pixel", 1, std::nullopt);
         return;
     }
@@ -71,15 +75,16 @@ void add_voxel_rays(const ShadowTrial& trial, Contenders& all) {
         add("rays, by pixel", rays, std::nullopt);
 }
 
-void add_voxel_cones(const ShadowTrial& trial, Contenders& all) {
-    if (!trial.is_soft) return;
+void add_voxel_cones(const ShadowCase& shadow_case, Contenders& all) {
+    if (!shadow_case.is_soft) return;
     const auto add = [&](const char* varied, int cones, int resolution) {
-        renderer::View view = trial.scene.view(trial.width, trial.height, cones);
-        view.shadow_cones = true;
-        view.pixel_error = always_finest;
-        all.push_back({.method = "voxel-cones",
-                       .setting = {.varied = varied, .rays = cones, .resolution = resolution},
-                       .run = [&trial, resolution, view] { return run_voxels(trial, resolution, view); }});
+        renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, cones);
+        view.shadow.kind = renderer::ShadowQuality::Kind::cones;
+        view.detail.pixel_error = always_finest;
+        all.push_back(
+            {.method = "voxel-cones",
+             .setting = {.varied = varied, .rays = cones, .resolution = resolution},
+             .run = [&shadow_case, resolution, view] { return run_voxels(shadow_case, resolution, view); }});
     };
     for (const int cones : cone_counts)
         add("cones", cones, own_resolution);
@@ -87,23 +92,25 @@ void add_voxel_cones(const ShadowTrial& trial, Contenders& all) {
         if (resolution != own_resolution) add("resolution", own_cones, resolution);
 }
 
-void add_pyramid(const ShadowTrial& trial, Contenders& all) {
-    const auto made = std::make_shared<std::map<int, ShadowFrames>>();
+void add_pyramid(const ShadowCase& shadow_case, Contenders& all) {
+    const auto made = std::make_shared<std::map<int, std::unique_ptr<ShadowFrames>>>();
     const auto add = [&](const char* varied, int rays, int resolution) {
-        const renderer::View view = trial.scene.view(trial.width, trial.height, rays);
+        const renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, rays);
         all.push_back({.method = "pyramid",
                        .setting = {.varied = varied, .rays = rays, .resolution = resolution},
-                       .run = [&trial, made, resolution, view] {
-                           ShadowFrames& frames = (*made)[resolution];
+                       .run = [&shadow_case, made, resolution, view] {
+                           std::unique_ptr<ShadowFrames>& frames = (*made)[resolution];
                            if (!frames)
-                               frames = pyramid_frames(trial.scene, {.resolution = resolution},
-                                                       trial.options.shaders);
-                           return frames(view);
+                               frames = std::make_unique<ShadowFrames>(
+                                   ShadowMethod::pyramid, shadow_case.scene,
+                                   renderer::ShadowOptions{.pyramid = {.resolution = resolution}},
+                                   shadow_case.options.shaders);
+                           return frames->run(view);
                        }});
     };
     for (const int resolution : pyramid_resolutions)
-        add("resolution", trial.is_soft ? own_rays : 1, resolution);
-    if (!trial.is_soft) return;
+        add("resolution", shadow_case.is_soft ? own_rays : 1, resolution);
+    if (!shadow_case.is_soft) return;
     for (const int rays : ray_counts)
         if (rays != own_rays) add("rays", rays, own_resolution);
 }
@@ -120,32 +127,24 @@ const char* name_of(renderer::ShadowFormat format) {
     return "fp32";
 }
 
-ShadowRun run_map(std::shared_ptr<renderer::SoftShadowRenderer>& made, const ShadowTrial& trial,
-                  const renderer::SoftShadowOptions& map) {
-    const ShadowScene& scene = trial.scene;
-    const bool is_first = made == nullptr;
-    if (is_first)
-        made =
-            std::make_shared<renderer::SoftShadowRenderer>(scene.scene(), scene.all(), scene.caster_nodes(),
-                                                           scene.ground_nodes(), map, trial.options.shaders);
-    renderer::SoftShadowPicture picture = made->render(scene.view(trial.width, trial.height, 1));
-    return {made->map().statistics().milliseconds, std::move(picture.visible), is_first, is_first};
-}
-
-void add_soft_shadow_maps(const ShadowTrial& trial, Contenders& all) {
-    if (!trial.is_soft) return;
+void add_soft_shadow_maps(const ShadowCase& shadow_case, Contenders& all) {
+    if (!shadow_case.is_soft) return;
+    const renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, 1);
     const auto add = [&](const char* varied, const renderer::SoftShadowOptions& map) {
         const bool is_one = map.passes == renderer::ShadowPasses::one;
-        all.push_back(
-            {.method = "soft-shadow-map",
-             .setting = {.varied = varied,
-                         .map_size = map.receiver_size,
-                         .passes = is_one ? "one" : "two",
-                         .format = name_of(map.format)},
-             .ground_only = true,
-             .run = [&trial, map, made = std::shared_ptr<renderer::SoftShadowRenderer>()]() mutable {
-                 return run_map(made, trial, map);
-             }});
+        all.push_back({.method = "soft-shadow-map",
+                       .setting = {.varied = varied,
+                                   .map_size = map.receiver_size,
+                                   .passes = is_one ? "one" : "two",
+                                   .format = name_of(map.format)},
+                       .ground_only = true,
+                       .run = [&shadow_case, map, view, made = std::shared_ptr<ShadowFrames>()]() mutable {
+                           if (!made)
+                               made = std::make_shared<ShadowFrames>(
+                                   ShadowMethod::soft_shadow_map, shadow_case.scene,
+                                   renderer::ShadowOptions{.map = map}, shadow_case.options.shaders);
+                           return made->run(view);
+                       }});
     };
     for (const auto passes : {renderer::ShadowPasses::one, renderer::ShadowPasses::two}) {
         const char* const varied =
@@ -164,29 +163,30 @@ struct FixedLine {
 constexpr std::array<FixedLine, 2> hard_lines = {{{1, "size, 1 tap"}, {3, "size, 3 x 3 taps"}}};
 constexpr std::array<FixedLine, 2> soft_lines = {{{3, "size, 3 x 3 taps"}, {7, "size, 7 x 7 taps"}}};
 
-void add_plain_maps(const ShadowTrial& trial, Contenders& all) {
+void add_plain_maps(const ShadowCase& shadow_case, Contenders& all) {
     const auto map = std::make_shared<std::unique_ptr<PcfShadow>>();
     const auto add = [&](const char* method, const char* varied, const PcfOptions& options) {
         all.push_back({.method = method,
                        .setting = {.varied = varied, .map_size = options.map_size, .kernel = options.kernel},
                        .is_ours = false,
-                       .run = [&trial, map, options, is_first = true]() mutable {
+                       .run = [&shadow_case, map, options, is_first = true]() mutable {
                            if (!*map) {
-                               const ShadowScene& scene = trial.scene;
+                               const ShadowScene& scene = shadow_case.scene;
                                *map = std::make_unique<PcfShadow>(scene.scene(), scene.all(), scene.casters(),
-                                                                  scene.light(), trial.receivers.points,
-                                                                  trial.receivers.normals);
+                                                                  scene.light(), shadow_case.receivers.points,
+                                                                  shadow_case.receivers.normals);
                            }
                            PcfShadow::Result result = (*map)->shadow(options);
                            const bool prepares = std::exchange(is_first, false);
-                           return ShadowRun{result.milliseconds, shares_of(trial.receivers, result.shares),
-                                            prepares, prepares};
+                           return ShadowRun{result.milliseconds,
+                                            shares_of(shadow_case.receivers, result.shares), prepares,
+                                            prepares};
                        }});
     };
-    for (const FixedLine& line : trial.is_soft ? soft_lines : hard_lines)
+    for (const FixedLine& line : shadow_case.is_soft ? soft_lines : hard_lines)
         for (const int size : plain_map_sizes)
             add("pcf", line.varied, {.map_size = size, .kernel = line.kernel});
-    if (!trial.is_soft) return;
+    if (!shadow_case.is_soft) return;
     for (const int size : plain_map_sizes)
         add("pcss", "size, 5 x 5 taps", {.map_size = size, .filter = PcfFilter::penumbra, .kernel = 5});
     for (const int kernel : {3, 8, 16})
@@ -194,40 +194,41 @@ void add_plain_maps(const ShadowTrial& trial, Contenders& all) {
 }
 
 /// A primary and a shadow ray a pixel: of a hard light it is the truth itself.
-ShadowRun run_embree_hard(const ShadowTrial& trial, Rays rays) {
-    const renderer::View view = trial.scene.view(trial.width, trial.height, 1);
+ShadowRun run_embree_hard(const ShadowCase& shadow_case, Rays rays) {
+    const renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, 1);
     const reference::ReferenceImage image =
-        trial.tracer.trace(view.camera, view.light, trial.width, trial.height, 0, rays);
+        shadow_case.tracer.trace(view.camera, view.light, shadow_case.width, shadow_case.height, 0, rays);
     return {image.milliseconds, {image.lit.begin(), image.lit.end()}};
 }
 
-ShadowRun run_embree_soft(const ShadowTrial& trial, const reference::AreaLightOptions& options) {
+ShadowRun run_embree_soft(const ShadowCase& shadow_case, const reference::AreaLightOptions& options) {
     const auto start = Clock::now();
-    const auto found = area_light_visibility(trial.tracer, trial.receivers.points, trial.receivers.normals,
-                                             trial.scene.light(), options);
+    const auto found =
+        area_light_visibility(shadow_case.tracer, shadow_case.receivers.points, shadow_case.receivers.normals,
+                              shadow_case.scene.light(), options);
     const double ms = milliseconds_since(start);
     std::vector<float> values;
     values.reserve(found.size());
     for (const reference::LightVisibility& point : found)
         values.push_back(float(point.visible));
-    return {ms, shares_of(trial.receivers, values)};
+    return {ms, shares_of(shadow_case.receivers, values)};
 }
 
-void add_embree(const ShadowTrial& trial, Contenders& all) {
+void add_embree(const ShadowCase& shadow_case, Contenders& all) {
     for (const Rays rays : {Rays::single, Rays::packets}) {
         for (const int across : strata) {
-            if (!trial.is_soft && across > 1) break;
+            if (!shadow_case.is_soft && across > 1) break;
             // A packet holds rays of one pixel.
-            if (trial.is_soft && across == 1 && rays == Rays::packets) continue;
+            if (shadow_case.is_soft && across == 1 && rays == Rays::packets) continue;
             reference::AreaLightOptions options;
             options.exact_strata = across;
             options.rays = rays;
             all.push_back({.method = rays == Rays::single ? "embree-single" : "embree-packets",
                            .setting = {.varied = "samples", .samples = across * across},
                            .is_ours = false,
-                           .run = [&trial, options] {
-                               return trial.is_soft ? run_embree_soft(trial, options)
-                                                    : run_embree_hard(trial, options.rays);
+                           .run = [&shadow_case, options] {
+                               return shadow_case.is_soft ? run_embree_soft(shadow_case, options)
+                                                          : run_embree_hard(shadow_case, options.rays);
                            }});
         }
     }
@@ -235,12 +236,12 @@ void add_embree(const ShadowTrial& trial, Contenders& all) {
 
 }  // namespace
 
-std::vector<ShadowContender> shadow_contenders(const ShadowTrial& trial) {
+std::vector<ShadowContender> shadow_contenders(const ShadowCase& shadow_case) {
     constexpr std::array makers = {add_voxel_rays,       add_voxel_cones, add_pyramid,
                                    add_soft_shadow_maps, add_plain_maps,  add_embree};
     Contenders all;
     for (const auto& add : makers)
-        add(trial, all);
+        add(shadow_case, all);
     return all;
 }
 

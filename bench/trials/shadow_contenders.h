@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/charts/chart.h"
+#include "bench/trials/chart.h"
 #include "bench/trials/shadow_runs.h"
 #include "bench/trials/shadow_scene.h"
 #include "reference/image.h"
@@ -16,12 +16,12 @@
 
 namespace cairn::bench {
 
-/// What voxels of one scene are kept in, from one trial to the next: by the voxels a side that rays meet, or
+/// What voxels of one scene are kept in, from one case to the next: by the voxels a side that rays meet, or
 /// by what a pixel shows.
-using KeptVoxels = std::map<std::optional<int>, std::shared_ptr<renderer::Renderer>>;
+using KeptVoxels = std::map<std::optional<int>, std::unique_ptr<ShadowFrames>>;
 
 /// What all contenders are asked: what of the light arrives at each pixel of a picture.
-struct ShadowTrial {
+struct ShadowCase {
     const ShadowScene& scene;
     int width = 512;
     int height = 384;
@@ -52,7 +52,7 @@ struct ShadowContender {
     bool ground_only = false;  ///< knows no shadow of what throws it on itself
     std::function<ShadowRun()> run;
 };
-/// All of them for one trial, which must outlive them; within a line from cheap to dear.
-[[nodiscard]] std::vector<ShadowContender> shadow_contenders(const ShadowTrial& trial);
+/// All of them for one case, which must outlive them; within a line from cheap to dear.
+[[nodiscard]] std::vector<ShadowContender> shadow_contenders(const ShadowCase& shadow_case);
 
 }  // namespace cairn::bench

@@ -3,42 +3,20 @@
 #include <utility>
 
 #include "bench/trials/samples.h"
-#include "renderer/mesh/mesh_raster.h"
 
 namespace cairn::bench {
 
-std::shared_ptr<renderer::Renderer> shadowing_renderer(const ShadowScene& scene,
-                                                       const renderer::TreeOptions& tree,
-                                                       const gl::ShaderSource& shaders) {
-    auto made = std::make_shared<renderer::Renderer>(scene.scene(), scene.all(), tree, shaders);
-    made->set_mix({.meshes = std::make_shared<renderer::MeshRaster>(scene.scene(), scene.all(), shaders),
-                   .mesh_shadows = true,
-                   .meshes_are_voxelized = true,
-                   .voxels_hidden = true});
-    return made;
-}
+ShadowFrames::ShadowFrames(renderer::ShadowMethod method, const ShadowScene& scene,
+                           const renderer::ShadowOptions& options, const gl::ShaderSource& shaders)
+    : method_(method),
+      renderer_(renderer::make_shadow_renderer(method, scene.shadow_scene(method), options, shaders)) {}
 
-ShadowRun shadow_frame(renderer::Renderer& renderer, const renderer::View& view) {
-    renderer.forget_picture();
-    optics::LightShares found = renderer.light_shares(view);
-    const renderer::FrameStatistics& frame = renderer.statistics();
-    return {frame.milliseconds, std::move(found.shares), frame.bricks_produced + frame.nodes_subdivided > 0};
-}
-
-ShadowFrames pyramid_frames(const ShadowScene& scene, const renderer::PyramidShadowOptions& options,
-                            const gl::ShaderSource& shaders) {
-    struct Kept {
-        renderer::PyramidShadowRenderer renderer;
-        bool is_first = true;
-    };
-    const auto kept = std::make_shared<Kept>(
-        Kept{renderer::PyramidShadowRenderer(scene.scene(), scene.all(), options, shaders)});
-    return [kept](const renderer::View& view) {
-        optics::LightShares found = kept->renderer.light_shares(view);
-        const bool is_first = std::exchange(kept->is_first, false);
-        return ShadowRun{kept->renderer.statistics().milliseconds, std::move(found.shares), is_first,
-                         is_first};
-    };
+ShadowRun ShadowFrames::run(const renderer::View& view) {
+    renderer::ShadowPicture picture = renderer_->render(view, {.image = false});
+    const bool is_first = std::exchange(is_first_, false);
+    const bool is_map = method_ == renderer::ShadowMethod::soft_shadow_map;
+    return {is_map ? picture.times.shadow_ms : picture.times.milliseconds, std::move(picture.light.shares),
+            is_first || picture.times.has_prepared, is_first};
 }
 
 renderer::TreeOptions tree_of(int resolution) {

@@ -7,8 +7,8 @@
 
 #include "bench/trials/shadow_scene.h"
 #include "gl/shader_source.h"
-#include "renderer/pyramid_shadow.h"
-#include "renderer/renderer.h"
+#include "renderer/pool/tree_options.h"
+#include "renderer/shadow_renderer.h"
 
 namespace cairn::bench {
 
@@ -19,21 +19,21 @@ struct ShadowRun {
     bool from_nothing = false;  ///< nothing was kept before it
 };
 
-/// Frames of which only the shadow comes from voxels: the scene is rasterized, and rays go from its pixels to
-/// the light (Forest et al. 2009, section 3.1), as `cairn shadow` has it.
-[[nodiscard]] std::shared_ptr<renderer::Renderer> shadowing_renderer(const ShadowScene& scene,
-                                                                     const renderer::TreeOptions& tree,
-                                                                     const gl::ShaderSource& shaders);
-/// Marches a frame, whatever was shown before.
-[[nodiscard]] ShadowRun shadow_frame(renderer::Renderer& renderer, const renderer::View& view);
+/// Shadows of one scene by one method, of which all that can be kept is kept from one to the next.
+class ShadowFrames {
+public:
+    ShadowFrames(renderer::ShadowMethod method, const ShadowScene& scene,
+                 const renderer::ShadowOptions& options, const gl::ShaderSource& shaders = {});
 
-/// Frames of one scene, of which all but the rays is kept from one to the next.
-using ShadowFrames = std::function<ShadowRun(const renderer::View& view)>;
+    /// The shares of the light, and the time of the whole frame; of a soft shadow map, which other pictures
+    /// could be drawn with, that of the map alone.
+    [[nodiscard]] ShadowRun run(const renderer::View& view);
 
-/// Such frames with the rays of Forest et al. 2009 (renderer/pyramid_shadow.h).
-[[nodiscard]] ShadowFrames pyramid_frames(const ShadowScene& scene,
-                                          const renderer::PyramidShadowOptions& options,
-                                          const gl::ShaderSource& shaders);
+private:
+    renderer::ShadowMethod method_;
+    std::unique_ptr<renderer::ShadowRenderer> renderer_;
+    bool is_first_ = true;
+};
 
 /// A tree of exactly so many voxels a side: 8, or 16 and more, a power of two.
 [[nodiscard]] renderer::TreeOptions tree_of(int resolution);

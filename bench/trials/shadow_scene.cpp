@@ -79,13 +79,17 @@ ShadowScene::ShadowScene(const std::string& path, bool with_ground)
     casters_ = scenes::part_of(all_, caster_nodes_);
 }
 
+renderer::ShadowScene ShadowScene::shadow_scene(renderer::ShadowMethod method) const {
+    if (method != renderer::ShadowMethod::soft_shadow_map) return {scene_, all_};
+    return {scene_, all_, caster_nodes_, ground_nodes_};
+}
+
 renderer::View ShadowScene::view(int width, int height, int rays) const {
     renderer::View view;
-    view.width = width;
-    view.height = height;
+    view.size = {width, height};
     view.camera = camera_above(framed_, double(width) / height);
     view.light = light_;
-    view.shadow_rays = rays;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
     return view;
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "optics/light.h"
-#include "renderer/renderer.h"
+#include "renderer/shadow_renderer.h"
 #include "scenes/node_selection.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
@@ -29,6 +29,8 @@ public:
     [[nodiscard]] const scenes::Snapshot& casters() const { return casters_; }  ///< all but the ground
     [[nodiscard]] const scenes::NodeSelection& caster_nodes() const { return caster_nodes_; }
     [[nodiscard]] const scenes::NodeSelection& ground_nodes() const { return ground_nodes_; }
+    /// Rays meet all of it; of a soft shadow map, the casters throw shadows on the ground.
+    [[nodiscard]] renderer::ShadowScene shadow_scene(renderer::ShadowMethod method) const;
     [[nodiscard]] const optics::Light& light() const { return light_; }
     /// All that throws shadows and the half of the shadow that is next to it, with that light. @param rays to
     /// it, a pixel

@@ -60,9 +60,9 @@ enum class StudyWindow : std::uint8_t {
 
 /// One placement, and what of the light is seen from the points of the floor. The occluder must outlive it.
 /// Needs the context that was current at its construction.
-class ShadowSetting {
+class StudySetting {
 public:
-    ShadowSetting(const ShadowOccluder& occluder, const ShadowPlacement& placement);
+    StudySetting(const ShadowOccluder& occluder, const ShadowPlacement& placement);
 
     [[nodiscard]] const ShadowPlacement& placement() const { return placement_; }
     [[nodiscard]] const optics::Light& light() const { return light_; }

@@ -28,10 +28,10 @@ struct FrameStatistics {
     /// Of `produce_ms`: sending to the GPU what is made or kept in main memory: nodes, volumes' bricks, and
     /// bricks that come back from there. What the GPU makes itself is not sent.
     double upload_ms = 0.0;
-    bool converged = true;              ///< nothing was missing: the picture is that of render()
+    bool converged = true;  ///< nothing was missing: the picture is that of a frame without a budget
     std::uint64_t bricks_resident = 0;  ///< after the frame
-    /// Of those, the ones that rays read, or that were produced, since render() or the first of the
-    /// render_within() for this view began.
+    /// Of the resident bricks, those that rays read, or that were produced, since the frame began; with a
+    /// budget, since the first frame of this view began.
     std::uint64_t bricks_used = 0;
     std::uint64_t brick_slots = 0;    ///< the most that can be resident
     std::size_t node_pool_bytes = 0;  ///< what the two stores take, all of it, used or not

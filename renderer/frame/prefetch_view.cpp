@@ -14,9 +14,9 @@ constexpr int ahead_stride = 2;     // at most: pixels a ray
 /// The same rays at fewer pixels: each sees the levels that it would see in the whole picture.
 View thinned_by(const View& view, int stride) {
     View thin = view;
-    thin.width = (view.width + stride - 1) / stride;
-    thin.height = (view.height + stride - 1) / stride;
-    thin.pixel_error = view.pixel_error * thin.height / view.height;
+    thin.size.width = (view.size.width + stride - 1) / stride;
+    thin.size.height = (view.size.height + stride - 1) / stride;
+    thin.detail.pixel_error = view.detail.pixel_error * thin.size.height / view.size.height;
     return thin;
 }
 
@@ -25,24 +25,24 @@ View thinned_by(const View& view, int stride) {
 View thinned(const View& view) {
     int stride = 4;
     View thin = thinned_by(view, stride);
-    while (view.width > 1 && Marcher::band_rows(thin.width, thin.height) < thin.height)
+    while (view.size.width > 1 && Marcher::band_rows(thin.size.width, thin.size.height) < thin.size.height)
         thin = thinned_by(view, stride *= 2);
     return thin;
 }
 
 View finer(const View& view, const TreeShape& shape) {
     View fine = view;
-    fine.pixel_error = view.pixel_error / shape.n;
-    return thinned_by(fine, std::clamp(int(shape.m * fine.pixel_error), 1, ahead_stride));
+    fine.detail.pixel_error = view.detail.pixel_error / shape.n;
+    return thinned_by(fine, std::clamp(int(shape.m * fine.detail.pixel_error), 1, ahead_stride));
 }
 
 bool band_from_middle(const View& view, int number, Rows& rows) {
-    const int count = std::max(ahead_pixels / view.width / PIXEL_BLOCK_SIDE, 1) * PIXEL_BLOCK_SIDE;
-    const int bands = (view.height + count - 1) / count;
+    const int count = std::max(ahead_pixels / view.size.width / PIXEL_BLOCK_SIDE, 1) * PIXEL_BLOCK_SIDE;
+    const int bands = (view.size.height + count - 1) / count;
     if (number >= bands) return false;
     const int middle = bands / 2;
     const int band = number % 2 == 0 ? middle + number / 2 : middle - (number + 1) / 2;
-    rows = {band * count, std::min(count, view.height - band * count)};
+    rows = {band * count, std::min(count, view.size.height - band * count)};
     return true;
 }
 

@@ -26,9 +26,9 @@ gl::Defines defines(const MarchSetting& setting) {
     gl::Defines out = setting.shape.defines(setting.has_color);
     append(out, {{"TRAVERSAL", std::to_string(int(setting.traversal))},
                  {"TILE_BLOCKS", flag(setting.tile_queries == TileQueries::blocks)},
-                 {"HAS_CONSTANT", flag(setting.kind.has_constant)},
-                 {"HAS_FINAL", flag(setting.kind.has_final)},
-                 {"VOLUME_STEPS", std::to_string(setting.kind.volume_steps)}});
+                 {"HAS_CONSTANT", flag(setting.content.has_constant)},
+                 {"HAS_FINAL", flag(setting.content.has_final)},
+                 {"VOLUME_STEPS", std::to_string(setting.content.volume_steps)}});
     return out;
 }
 
@@ -60,15 +60,15 @@ std::vector<MarchVariant> valid_variants(RayKind rays, const MarchSetting& setti
                                    .cones = !is_primary && on[4]};
         if (variant.progressive && setting.tile_queries == TileQueries::blocks) continue;
         if (variant.blended && setting.shape.mips == 0) continue;
-        if (variant.cones && !(variant.soft && setting.kind.of_surfaces())) continue;
+        if (variant.cones && !(variant.soft && setting.content.of_surfaces())) continue;
         valid.push_back(variant);
     }
     return valid;
 }
 
 gl::ProgramFamily<MarchVariant> march_programs(const MarchSetting& setting, const gl::ShaderSource& shaders) {
-    return gl::ProgramFamily<MarchVariant>([common = defines(setting), primary = setting.kind.primary,
-                                            shadow = setting.kind.shadow,
+    return gl::ProgramFamily<MarchVariant>([common = defines(setting), primary = setting.content.primary,
+                                            shadow = setting.content.shadow,
                                             shaders](const MarchVariant& variant) {
         gl::Defines all = common;
         append(all, defines(variant));

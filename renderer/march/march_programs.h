@@ -2,8 +2,6 @@
 
 #include <compare>
 #include <cstdint>
-#include <functional>
-#include <string>
 #include <vector>
 
 #include "gl/program_family.h"
@@ -11,23 +9,10 @@
 #include "renderer/march/tile_queries.h"
 #include "renderer/march/traversal.h"
 #include "renderer/pool/tree_shape.h"
+#include "renderer/produce/content_program.h"
 
 /// The programs of the ray-marcher, and what tells them apart.
 namespace cairn::renderer {
-
-/// How rays see a kind of content: the entry points, and what they need beside the pools.
-struct MarchKind {
-    std::string primary = "march/primary.comp.glsl";
-    std::string shadow = "march/shadow.comp.glsl";
-    /// Steps in which a ray crosses a voxel of a volume, [1, VOLUME_MOST_STEPS]; 0: the content is a surface,
-    /// whose shadow rays know SHOW_LIGHT and cones.
-    int volume_steps = 0;
-    bool has_constant = false;  ///< tiles may hold one value that is not 0, without a brick
-    bool has_final = false;     ///< tiles may have nothing finer to show
-    /// Called before each pass; may be empty.
-    std::function<void()> bind = nullptr;
-    [[nodiscard]] bool of_surfaces() const { return volume_steps == 0; }
-};
 
 /// What all programs of a marcher have in common.
 struct MarchSetting {
@@ -35,7 +20,7 @@ struct MarchSetting {
     bool has_color = false;
     Traversal traversal = Traversal::mini_stack;
     TileQueries tile_queries = TileQueries::list;
-    MarchKind kind = {};
+    ContentProgram content = {};
 };
 
 enum class RayKind : std::uint8_t { primary, shadow };

@@ -48,9 +48,9 @@ void set_area_light(interop::MarchView& out, const View& view, double voxel_size
     const optics::LightShape shape = light.positional ? light.shape : optics::LightShape::sphere;
     const bool soft = is_soft(view);
     out.light_shape = int(shape);
-    out.shadow_rays = soft ? view.shadow_rays : 1;
+    out.shadow_rays = shadow_samples(view);
     out.is_soft = soft ? 1 : 0;
-    out.is_cones = soft && view.shadow_cones ? 1 : 0;
+    out.is_cones = soft && view.shadow.kind == ShadowQuality::Kind::cones ? 1 : 0;
 }
 
 /// What of a view is told in voxels: of the finest level, from the root cube's low corner; or of the coarsest
@@ -86,11 +86,11 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
     const double half_height = std::tan(0.5 * view.camera.yfov);
-    const double half_width = half_height * view.width / view.height;
+    const double half_width = half_height * view.size.width / view.size.height;
 
     // Levels are n apart: the nearest one, as in mip mapping, has voxels between 1 / sqrt(n) and sqrt(n)
     // pixels.
-    const double cone = 2.0 * half_height / view.height * view.pixel_error * std::sqrt(double(n));
+    const double cone = 2.0 * half_height / view.size.height * view.detail.pixel_error * std::sqrt(double(n));
 
     // Far from the scene a float's step is many voxels: then rays start near the root cube, from the plane
     // that the eye moved forward lies in.
@@ -105,9 +105,9 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     out.skipped = float(skipped);
     out.right = glm::vec3(right * half_width);
     out.up = glm::vec3(up * half_height);
-    out.width = view.width;
-    out.height = view.height;
-    out.row_count = view.height;
+    out.width = view.size.width;
+    out.height = view.size.height;
+    out.row_count = view.size.height;
     out.light = glm::vec3(view.light.positional ? placed.light : glm::normalize(view.light.towards));
     out.light_is_positional = view.light.positional ? 1 : 0;
     out.light_color = view.light.color;
@@ -115,8 +115,8 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     out.background = view.background;
     out.background_pixel = background_pixel(view.background);
     out.shown = int(view.show);
-    out.casts_shadows = view.shadow == Shadow::hard ? 1 : 0;
-    out.shadow_cone_scale = float(view.shadow_pixel_error);
+    out.casts_shadows = view.shadow.kind == ShadowQuality::Kind::none ? 0 : 1;
+    out.shadow_cone_scale = float(view.shadow.pixel_error);
     set_area_light(out, view, placed.voxel);
     const auto finite = [](const glm::vec3& v, float scalar) {
         return std::isfinite((v.x + v.y) + (v.z + scalar));

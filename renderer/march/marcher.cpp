@@ -22,10 +22,6 @@ constexpr unsigned group_size = 64;
 constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
 constexpr int most_pauses_in_windows = ((16 << WINDOW_TILE_BITS) / TURN_BUDGET + 1) * MAX_WINDOWS;
 constexpr std::size_t window_header_bytes = sizeof(glm::ivec4);
-constexpr std::size_t query_header_bytes = sizeof(interop::MarchCounters);
-constexpr std::size_t query_counts_offset = query_header_bytes + QUERY_CAPACITY * sizeof(std::uint32_t);
-constexpr std::size_t query_urgent_offset = query_counts_offset + QUERY_COUNTS * sizeof(std::uint32_t);
-static_assert(QUERY_RANKS == QUERY_RANK_WINDOWS + 8 * MAX_WINDOWS);
 
 /// Rays in windows begin their descents at the window's tiles, and the eye is never far from those.
 MarchOptions options_for(const TreeShape& shape, const MarchOptions& options) {
@@ -53,20 +49,14 @@ std::uint32_t pixels_of(const std::vector<interop::BlockStart>& starts, const gl
 }  // namespace
 
 Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
-                 const gl::ShaderSource& shaders, MarchKind kind)
+                 const gl::ShaderSource& shaders, ContentProgram content)
     : options_(options_for(shape, options)),
-      kind_(std::move(kind)),
+      content_(std::move(content)),
       programs_(
-          march_programs({shape, has_color, options_.traversal, options_.tile_queries, kind_}, shaders)),
+          march_programs({shape, has_color, options_.traversal, options_.tile_queries, content_}, shaders)),
       view_(sizeof(interop::MarchView), "view"),
       shadow_ends_(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE * sizeof(float), "ends of shadow rays"),
-      queries_(query_urgent_offset + QUERY_RANKS * sizeof(std::uint32_t), "tile query buffer"),
-      query_capacity_(std::uint32_t(options.query_capacity)) {
-    if (options.query_capacity < 1 || options.query_capacity > QUERY_CAPACITY) {
-        throw Error(Fault::usage, "tile queries", std::to_string(options.query_capacity) + " are no capacity",
-                    "choose between 1 and " + std::to_string(QUERY_CAPACITY));
-    }
-    if (options.tile_queries == TileQueries::blocks) tile_blocks_.emplace(shaders);
+      queries_(options.query_capacity, options.tile_queries, shape.has_windows(), shaders) {
     if (shape.has_windows())
         windows_ = gl::Buffer(window_header_bytes + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows");
     GLuint id = 0;
@@ -115,16 +105,7 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         capacity_ * (shadow_cones_ ? sizeof(interop::ShadowConeSum) : sizeof(interop::ShadowSum));
     if (soft_shadows_ && shadow_sums_.size_bytes() < sum_bytes)
         shadow_sums_ = gl::Buffer(sum_bytes, "sums of shadow rays");
-    query_bits_offset_ = std::uint32_t(pool.slot_count());
-    entry_count_ = tree.entry_count();
-    const std::size_t usage_words = query_bits_offset_ + (3 * std::size_t(tree.entry_count()) + 31) / 32;
-    if (tile_blocks_) {
-        tile_blocks_->begin_frame(size_);
-        block_stamps_.resize(std::size_t(pool.slot_count()));
-    } else if (usage_.size_bytes() != usage_words * sizeof(std::uint32_t)) {
-        usage_ = gl::Buffer(usage_words * sizeof(std::uint32_t), "brick usage");
-        usage_.fill(0);
-    }
+    queries_.begin_frame(size_, tree.entry_count(), pool.slot_count());
     interop::MarchView marched = view;
     // They are told for one direction.
     if (options_.block_starts && view.casts_shadows != 0 && view.light_is_positional == 0 && !soft_shadows_) {
@@ -180,14 +161,12 @@ void Marcher::set_mix(const gl::Program& program) const {
     if (mix_.proxy_span != 0) program.set("proxy_first_row", mix_.proxy_first_row);
 }
 
-PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool, PassKind kind) {
-    forget_queries(kind, tree.entry_count());
+PassResult Marcher::run_pass(Round round, const Tree& tree, const BrickPool& pool, PassKind kind) {
+    queries_.begin_pass(kind != PassKind::patient);
     view_.bind_uniform(UBO_VIEW);
     if (windows_.id() != 0) windows_.bind_uniform(UBO_WINDOWS);
     rays_.bind_storage(SSBO_RAYS);
     lists_.bind_storage(SSBO_LISTS);
-    queries_.bind_storage(SSBO_QUERIES);
-    if (!tile_blocks_) usage_.bind_storage(SSBO_USAGE);
     if (soft_shadows_) shadow_sums_.bind_storage(SSBO_SHADOW_SUMS);
     image_.bind_storage(SSBO_PICTURE);
     starts_.bind_storage(SSBO_BLOCK_STARTS);
@@ -195,7 +174,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     tree.bind_for_reading();
     pool.bind_for_reading();
     bind_mix();
-    if (kind_.bind) kind_.bind();
+    if (content_.bind) content_.bind();
 
     const std::uint32_t old_shadow = waiting_shadow_;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
@@ -207,14 +186,12 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     first_pass_ = false;
     list_side_ ^= 1;
 
-    const interop::MarchCounters counters = read_counters();
+    QueryBuffer::Told told = queries_.read(round);
+    const interop::MarchCounters& counters = told.counters;
     PassResult result;
-    result.bytes_read = sizeof(counters);
-    if (tile_blocks_) {
-        read_blocks(result, round);
-    } else {
-        read_list(result, counters.queries, kind, pool.slot_count());
-    }
+    result.queries = std::move(told.queries);
+    result.brick_stamps = std::move(told.brick_stamps);
+    result.bytes_read = told.bytes_read;
     const bool waiting = counters.waiting_primary != 0 || counters.waiting_shadow != 0;
     const bool stalled = waiting && result.queries.empty() && counters.paused == 0 && primary == 0;
     pauses_ = counters.paused != 0 && result.queries.empty() ? pauses_ + 1 : 0;
@@ -230,61 +207,7 @@ PassResult Marcher::run_pass(std::uint32_t round, const Tree& tree, const BrickP
     return result;
 }
 
-void Marcher::forget_queries(PassKind kind, std::size_t entries) {
-    queries_.fill(0, query_header_bytes, 0);
-    if (urgent_told_) queries_.fill(query_urgent_offset, QUERY_RANKS * sizeof(std::uint32_t), 0);
-    urgent_told_ = false;
-    if (tile_blocks_) {
-        tile_blocks_->begin_pass();
-        return;
-    }
-    // Stand-ins are asked for by progressive passes alone.
-    const std::size_t query_words = ((kind == PassKind::patient ? 2 : 3) * entries + 31) / 32;
-    usage_.fill(query_bits_offset_ * sizeof(std::uint32_t), query_words * sizeof(std::uint32_t), 0);
-    if (kind != PassKind::patient)
-        queries_.fill(query_counts_offset, QUERY_COUNTS * sizeof(std::uint32_t), 0);
-}
-
-/// @param asked  how many would have been in the list, had it had room.
-void Marcher::read_list(PassResult& result, std::uint32_t asked, PassKind kind, int slots) {
-    result.queries = queries_.read_all<std::uint32_t>(std::min(asked, query_capacity_), query_header_bytes);
-    if (kind != PassKind::patient)
-        result.query_counts = queries_.read_all<std::uint32_t>(QUERY_COUNTS, query_counts_offset);
-    result.brick_stamps = usage_.read_all<std::uint32_t>(std::size_t(slots));
-    result.bytes_read += (result.queries.size() + result.query_counts.size() + result.brick_stamps.size()) *
-                         sizeof(std::uint32_t);
-    if (asked <= query_capacity_) return;
-    const std::vector<std::uint32_t> urgent = read_urgent(result);
-    result.queries.insert(result.queries.end(), urgent.begin(), urgent.end());
-}
-
-void Marcher::read_blocks(PassResult& result, std::uint32_t round) {
-    TileBlocks::Told told = tile_blocks_->reduce();
-    result.bytes_read += told.bytes_read;
-    for (const std::uint32_t slot : told.slots)
-        block_stamps_[slot] = round;
-    result.brick_stamps = block_stamps_;
-    const auto listed = std::ptrdiff_t(told.queries.size());
-    for (const std::uint32_t query : read_urgent(result)) {
-        if (!std::binary_search(told.queries.begin(), told.queries.begin() + listed, query))
-            told.queries.push_back(query);
-    }
-    result.queries = std::move(told.queries);
-}
-
-/// One query of each rank, of those that found no room.
-std::vector<std::uint32_t> Marcher::read_urgent(PassResult& result) {
-    urgent_told_ = true;
-    const std::size_t ranks = windows_.id() != 0 ? QUERY_RANKS : QUERY_RANK_WINDOWS;
-    result.bytes_read += ranks * sizeof(std::uint32_t);
-    std::vector<std::uint32_t> queries;
-    for (const std::uint32_t word : queries_.read_all<std::uint32_t>(ranks, query_urgent_offset)) {
-        if (word != 0) queries.push_back(word - 1);
-    }
-    return queries;
-}
-
-void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool& pool, PassKind kind) const {
+void Marcher::run(const Dispatch& dispatch, Round round, const BrickPool& pool, PassKind kind) const {
     // Four lists of `capacity_` pixels: primary in and out, shadow in and out, changing sides each pass.
     auto list = [&](int rays, int side) { return unsigned(std::size_t(2 * rays + side) * capacity_); };
     const int of_kind = dispatch.is_shadow ? 1 : 0;
@@ -293,25 +216,15 @@ void Marcher::run(const Dispatch& dispatch, std::uint32_t round, const BrickPool
     program.set("first_pass", int(first_pass_));
     program.set("list_in", list(of_kind, list_side_));
     program.set("list_out", list(of_kind, list_side_ ^ 1));
-    if (kind != PassKind::patient) {
-        program.set("stand_in", int(kind == PassKind::stand_in));
-        program.set("entry_count", entry_count_);
-    }
+    if (kind != PassKind::patient) program.set("stand_in", int(kind == PassKind::stand_in));
     program.set("shadow_list", list(1, list_side_ ^ 1));
-    program.set("pass_number", round);
-    program.set("query_capacity", query_capacity_);
-    program.set("usage_query_offset", query_bits_offset_);
+    program.set("pass_number", round.number);
+    queries_.set(program);
     program.set("pool_levels", pool.levels());
     set_mix(program);
     program.use();
     gl::dispatch_threads(dispatch.rays, group_size);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
-interop::MarchCounters Marcher::read_counters() const {
-    interop::MarchCounters counters{};
-    queries_.read(0, &counters, sizeof(counters));
-    return counters;
 }
 
 std::vector<std::uint8_t> Marcher::read_image() const {

@@ -2,21 +2,21 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "gl/buffer.h"
 #include "gl/program.h"
+#include "renderer/march/march_options.h"
 #include "renderer/march/march_programs.h"
-#include "renderer/march/tile_blocks.h"
-#include "renderer/march/tile_queries.h"
-#include "renderer/march/traversal.h"
+#include "renderer/march/query_buffer.h"
 #include "renderer/pool/brick_pool.h"
+#include "renderer/pool/round.h"
 #include "renderer/pool/tree.h"
+#include "renderer/produce/content_program.h"
+#include "renderer/produce/tile_query.h"
 #include "shaders/interop/march.h"
-#include "shaders/interop/tile_query.h"
 #include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
@@ -28,27 +28,14 @@ enum class PassKind : std::uint8_t {
     stand_in,     ///< no ray waits: the nearest ancestor's brick is shown
 };
 
-struct MarchOptions {
-    Traversal traversal = Traversal::mini_stack;
-    bool block_starts = true;  ///< rays start at block_starts(), where there are any
-    /// Tiles that a pass can ask for, [1, QUERY_CAPACITY]. Where more are asked for, the most urgent is known
-    /// all the same: a brick, or else the children of a node as deep as any.
-    int query_capacity = QUERY_CAPACITY;
-    TileQueries tile_queries = TileQueries::list;  ///< patient passes alone know blocks
-};
-
 /// What one pass of rays came back with.
 struct PassResult {
     std::uint32_t waiting_primary = 0;  ///< rays that missed a tile or paused
     std::uint32_t waiting_shadow = 0;   ///< the same, and shadow rays not yet started
     std::uint32_t stood_in = 0;         ///< missing tiles that rays did not wait for
     std::uint32_t launched = 0;  ///< rays that began; all of the band's in its first pass, but for a proxy
-    /// 2 * node entry + QUERY_*, or 2 * Tree::entry_count() + entry for a brick that could stand in; each
-    /// once.
-    std::vector<std::uint32_t> queries;
-    std::vector<std::uint32_t>
-        query_counts;  ///< rays that ask, by query % QUERY_COUNTS; not of patient passes
-    std::vector<std::uint32_t> brick_stamps;  ///< one a slot: the last round whose rays used it
+    std::vector<TileQuery> queries;           ///< each once; patient passes do not count the rays that ask
+    std::vector<std::uint32_t> brick_stamps;  ///< of each slot, the last round whose rays used it
     std::size_t bytes_read = 0;               ///< from the GPU, to know all this
     [[nodiscard]] bool done() const { return waiting_primary == 0 && waiting_shadow == 0; }
 };
@@ -74,7 +61,7 @@ class Marcher {
 public:
     /// @throws Error (Fault::usage) for a query capacity that is none.
     Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
-            const gl::ShaderSource& shaders, MarchKind kind = {});
+            const gl::ShaderSource& shaders, ContentProgram content = {});
 
     /// Rows of a picture that are marched at once: as many as the driver's largest buffer holds ray states
     /// for.
@@ -89,13 +76,13 @@ public:
     void set_windows(const std::vector<interop::MarchWindow>& windows);
 
     /// Runs every waiting ray until it ends, misses a tile, or has crossed so many cells that it pauses.
-    /// `round` is a number that grows with each pass.
+    /// @param round  grows with each pass.
     /// @throws Error (Fault::internal) when rays wait though nothing is missing and none has paused, or pause
     /// without end.
-    [[nodiscard]] PassResult run_pass(std::uint32_t round, const Tree& tree, const BrickPool& pool,
+    [[nodiscard]] PassResult run_pass(Round round, const Tree& tree, const BrickPool& pool,
                                       PassKind kind = PassKind::patient);
 
-    [[nodiscard]] bool marches_surfaces() const { return kind_.of_surfaces(); }
+    [[nodiscard]] bool marches_surfaces() const { return content_.of_surfaces(); }
 
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
 
@@ -110,15 +97,10 @@ private:
         bool is_shadow = false;
         std::uint32_t rays = 0;
     };
-    void run(const Dispatch& dispatch, std::uint32_t round, const BrickPool& pool, PassKind kind) const;
-    [[nodiscard]] interop::MarchCounters read_counters() const;
-    void forget_queries(PassKind kind, std::size_t entries);
-    void read_list(PassResult& result, std::uint32_t asked, PassKind kind, int slots);
-    void read_blocks(PassResult& result, std::uint32_t round);
-    [[nodiscard]] std::vector<std::uint32_t> read_urgent(PassResult& result);
+    void run(const Dispatch& dispatch, Round round, const BrickPool& pool, PassKind kind) const;
 
     MarchOptions options_;
-    MarchKind kind_;
+    ContentProgram content_;
     void bind_mix() const;
     void set_mix(const gl::Program& program) const;
 
@@ -129,11 +111,8 @@ private:
     gl::TextureHandle shadow_ends_texture_;
     gl::Buffer rays_;
     gl::Buffer lists_;
-    gl::Buffer queries_;
-    gl::Buffer usage_;        ///< none with tile_blocks_
+    QueryBuffer queries_;
     gl::Buffer shadow_sums_;  ///< empty until a frame has soft shadows
-    std::optional<TileBlocks> tile_blocks_;
-    std::vector<std::uint32_t> block_stamps_;  ///< of slots, with tile_blocks_
     gl::Buffer image_;
     gl::Buffer starts_;
     std::size_t start_count_ = 0;
@@ -141,13 +120,9 @@ private:
     MarchMix mix_;
     glm::ivec2 size_{0};
     std::size_t capacity_ = 0;  // pixels that the buffers hold
-    std::uint32_t query_bits_offset_ = 0;
-    std::uint32_t entry_count_ = 0;
-    std::uint32_t query_capacity_ = 0;
     std::uint32_t waiting_primary_ = 0;
     std::uint32_t waiting_shadow_ = 0;
     bool first_pass_ = true;
-    bool urgent_told_ = true;  // the last pass left queries by rank
     bool show_tree_ = false;
     int shadow_rays_ = 1;  // of a pixel
     bool soft_shadows_ = false;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gl/buffer.h"
+#include "gl/buffer_offset.h"
 #include "gl/draw_state.h"
 #include "gl/handle.h"
 #include "gl/program_family.h"
@@ -84,8 +85,8 @@ gl::Buffer index_buffer(const voxelizer::GpuSurfaceChunk& chunk) {
 
 }  // namespace
 
-struct MeshRaster::Parts {
-    Parts(const voxelizer::Grid& grid, const gl::ShaderSource& shaders)
+struct MeshRaster::Impl {
+    Impl(const voxelizer::Grid& grid, const gl::ShaderSource& shaders)
         : lattice(grid),
           view_buffer(sizeof(interop::MarchView), "view of a mesh"),
           mesh_view_buffer(sizeof(interop::MeshView), "place of a mesh"),
@@ -154,7 +155,7 @@ struct MeshRaster::Parts {
 
 /// Sets the view and where fragments go. The viewport is the whole picture's, of which the targets hold a
 /// part.
-void MeshRaster::Parts::begin(const Strip& strip, const MeshTargets& targets) {
+void MeshRaster::Impl::begin(const Strip& strip, const MeshTargets& targets) {
     if (placed_strip != strip) placed_of.reset();
     placed_strip = strip;
     interop::MarchView view{};
@@ -179,7 +180,7 @@ void MeshRaster::Parts::begin(const Strip& strip, const MeshTargets& targets) {
 
 /// Fills `placed` from the bound chunk. Most meshes are one batch: their second pass finds it as the first
 /// left it.
-void MeshRaster::Parts::place(std::size_t chunk, unsigned first, unsigned count) {
+void MeshRaster::Impl::place(std::size_t chunk, unsigned first, unsigned count) {
     if (placed_of == std::pair(chunk, first)) return;
     place_triangles.set("first", first);
     place_triangles.set("count", count);
@@ -191,7 +192,7 @@ void MeshRaster::Parts::place(std::size_t chunk, unsigned first, unsigned count)
     placed_of = std::pair(chunk, first);
 }
 
-void MeshRaster::Parts::draw_all(const gl::Program& drawing) {
+void MeshRaster::Impl::draw_all(const gl::Program& drawing) {
     glBindVertexArray(vertex_array.id());
     placed.bind_storage(SSBO_MESH_TRIANGLES);
     for (std::size_t chunk = 0; chunk < surface->chunks.size(); ++chunk) {
@@ -205,12 +206,12 @@ void MeshRaster::Parts::draw_all(const gl::Program& drawing) {
             drawing.set("first", first);
             drawing.use();
             glDrawElements(GL_TRIANGLES, GLsizei(3 * count), GL_UNSIGNED_INT,
-                           reinterpret_cast<const void*>(std::size_t(first) * 3 * sizeof(std::uint32_t)));
+                           gl::buffer_offset(std::size_t(first) * 3 * sizeof(std::uint32_t)));
         }
     }
 }
 
-void MeshRaster::Parts::draw_nearest(const Strip& strip) {
+void MeshRaster::Impl::draw_nearest(const Strip& strip) {
     const glm::ivec2 size(strip.picture.x, strip.rows);
     if (nearest.size() != size) {
         nearest = MeshTargets();  // first, so that both never exist
@@ -225,7 +226,7 @@ void MeshRaster::Parts::draw_nearest(const Strip& strip) {
     draw_all(program("mesh/find_nearest.frag.glsl"));
 }
 
-void MeshRaster::Parts::draw_look(const Strip& strip) {
+void MeshRaster::Impl::draw_look(const Strip& strip) {
     const glm::ivec2 size(strip.picture.x, strip.rows);
     if (look.size() != size) {
         look = MeshTargets();
@@ -239,7 +240,7 @@ void MeshRaster::Parts::draw_look(const Strip& strip) {
     draw_all(program("mesh/draw_surface.frag.glsl"));
 }
 
-void MeshRaster::Parts::draw_span(const Strip& strip) {
+void MeshRaster::Impl::draw_span(const Strip& strip) {
     const glm::ivec2 size(strip.picture.x, strip.rows);
     if (span.size() != size) {
         span = MeshTargets();
@@ -270,15 +271,15 @@ voxelizer::Grid lattice_around(const scenes::Bounds& bounds) {
 
 MeshRaster::MeshRaster(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                        const gl::ShaderSource& shaders)
-    : parts_(std::make_unique<Parts>(lattice_around(snapshot.bounds), shaders)) {
-    parts_->own =
-        voxelizer::upload(voxelizer::build_surface(scene, snapshot, parts_->lattice, {.attributes = true}));
-    parts_->show(parts_->own);
+    : impl_(std::make_unique<Impl>(lattice_around(snapshot.bounds), shaders)) {
+    impl_->own =
+        voxelizer::upload(voxelizer::build_surface(scene, snapshot, impl_->lattice, {.attributes = true}));
+    impl_->show(impl_->own);
 }
 MeshRaster::MeshRaster(const voxelizer::GpuSurface& surface, const voxelizer::Grid& lattice,
                        const gl::ShaderSource& shaders)
-    : parts_(std::make_unique<Parts>(lattice, shaders)) {
-    parts_->show(surface);
+    : impl_(std::make_unique<Impl>(lattice, shaders)) {
+    impl_->show(surface);
 }
 MeshRaster::MeshRaster(MeshRaster&&) noexcept = default;
 MeshRaster& MeshRaster::operator=(MeshRaster&&) noexcept = default;
@@ -286,41 +287,41 @@ MeshRaster::~MeshRaster() = default;
 
 void MeshRaster::surface_moved() {
     glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
-    parts_->forget_drawn();
+    impl_->forget_drawn();
 }
 
 void MeshRaster::show(const voxelizer::GpuSurface& surface) {
-    parts_->show(surface);
+    impl_->show(surface);
 }
 
 MeshSurface MeshRaster::draw_surface(const interop::MarchView& view, const MarchSpace& space, int row) {
     const Strip strip = strip_of(view, space, row);
-    if (parts_->surface_strip != strip) {
-        parts_->surface_strip.reset();
-        parts_->draw_nearest(strip);
-        parts_->draw_look(strip);
-        parts_->surface_strip = strip;
+    if (impl_->surface_strip != strip) {
+        impl_->surface_strip.reset();
+        impl_->draw_nearest(strip);
+        impl_->draw_look(strip);
+        impl_->surface_strip = strip;
     }
-    return {strip.first_row, strip.rows, parts_->nearest.texture(0), parts_->look.texture(0)};
+    return {strip.first_row, strip.rows, impl_->nearest.texture(0), impl_->look.texture(0)};
 }
 
 MeshSpan MeshRaster::draw_span(const interop::MarchView& view, const MarchSpace& space, int row) {
     const Strip strip = strip_of(view, space, row);
-    if (parts_->span_strip != strip) {
-        parts_->span_strip.reset();
-        parts_->draw_span(strip);
-        parts_->span_strip = strip;
+    if (impl_->span_strip != strip) {
+        impl_->span_strip.reset();
+        impl_->draw_span(strip);
+        impl_->span_strip = strip;
     }
-    return {strip.first_row, strip.rows, parts_->span.texture(0), parts_->span.texture(1)};
+    return {strip.first_row, strip.rows, impl_->span.texture(0), impl_->span.texture(1)};
 }
 
 std::uint64_t MeshRaster::triangle_count() const {
-    return parts_->triangle_count;
+    return impl_->triangle_count;
 }
 
 std::size_t MeshRaster::size_bytes() const {
-    std::size_t sum = parts_->own.size_bytes() + parts_->placed.size_bytes();
-    for (const gl::Buffer& buffer : parts_->indices)
+    std::size_t sum = impl_->own.size_bytes() + impl_->placed.size_bytes();
+    for (const gl::Buffer& buffer : impl_->indices)
         sum += buffer.size_bytes();
     return sum;
 }

@@ -84,8 +84,8 @@ public:
     [[nodiscard]] std::size_t size_bytes() const;
 
 private:
-    struct Parts;
-    std::unique_ptr<Parts> parts_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace cairn::renderer

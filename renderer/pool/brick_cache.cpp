@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "gl/buffer_offset.h"
 
 namespace cairn::renderer {
 namespace {
@@ -35,10 +36,6 @@ std::size_t layer_bytes(const BrickPool::Layer& layer) {
 /// Where the next layer, or the masks, may start.
 std::size_t aligned(std::size_t offset) {
     return (offset + 7) / 8 * 8;
-}
-
-void* as_pointer(std::size_t offset) {
-    return reinterpret_cast<void*>(offset);
 }
 
 /// Producers write the pool as images and storage, and rays read it; transfers come after both.
@@ -90,7 +87,8 @@ void BrickCache::start_reading(Reading& reading, const Tree::Evicted& evicted) c
     for (const BrickPool::Layer& layer : layers_) {
         const glm::ivec3 low = pool_.first_texel(evicted.slot, layer.mip);
         glGetTextureSubImage(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
-                             layer.format, layer.type, GLsizei(layer_bytes(layer)), as_pointer(offset));
+                             layer.format, layer.type, GLsizei(layer_bytes(layer)),
+                             gl::buffer_offset(offset));
         offset = aligned(offset + layer_bytes(layer));
     }
     const std::size_t mask_bytes = pool_.mask_bytes_a_slot();
@@ -140,7 +138,7 @@ bool BrickCache::restore(const Tile& tile, int slot) {
     for (const BrickPool::Layer& layer : layers_) {
         const glm::ivec3 low = pool_.first_texel(slot, layer.mip);
         glTextureSubImage3D(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
-                            layer.format, layer.type, as_pointer(offset));
+                            layer.format, layer.type, gl::buffer_offset(offset));
         offset = aligned(offset + layer_bytes(layer));
     }
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);

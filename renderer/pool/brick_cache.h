@@ -10,6 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include <glad/gl.h>
+
 #include "gl/buffer.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree.h"
@@ -41,7 +43,6 @@ public:
     };
     [[nodiscard]] const Counters& counters() const { return counters_; }
     [[nodiscard]] std::size_t size_bytes() const { return order_.size() * (brick_bytes_ + record_bytes); }
-    [[nodiscard]] std::size_t brick_count() const { return order_.size(); }
 
 private:
     struct Brick {

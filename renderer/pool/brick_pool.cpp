@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 
 #include "base/error.h"
+#include "gl/buffer_offset.h"
 #include "gl/limits.h"
 #include "shaders/interop/pool.h"
 #include "shaders/interop/produce.h"
@@ -20,7 +22,7 @@ gl::TextureHandle make_texture(GLenum format, glm::ivec3 size, GLint filter) {
     glTextureStorage3D(id, 1, format, size.x, size.y, size.z);
     if (glGetError() == GL_OUT_OF_MEMORY) {
         throw Error(Fault::memory, "brick pool", "the driver has no room for it",
-                    "choose a smaller --brick-pool");
+                    "choose a smaller PoolSizes::brick_bytes");
     }
     glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, filter);
     glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, filter);
@@ -149,9 +151,8 @@ void BrickPool::upload(int slot, const gl::Buffer& texels, std::size_t offset_by
     const int side = levels_.front().w;
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, texels.id());
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    // With a buffer bound, the pointer is an offset in it.
     glTextureSubImage3D(color_.id(), 0, texel.x, texel.y, texel.z, side, side, side, GL_RED, GL_UNSIGNED_BYTE,
-                        reinterpret_cast<const void*>(offset_bytes));
+                        gl::buffer_offset(offset_bytes));
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     glNamedBufferSubData(masks_.id(), GLintptr(std::size_t(slot) * mask_bytes_a_slot()),

@@ -57,9 +57,9 @@ public:
 
     /// What every slot has of a mip in a texture of the pool: a cube of `side` texels at first_texel().
     struct Layer {
-        GLuint texture = 0;
-        GLenum format = 0;  ///< as pixels are transferred, bit for bit
-        GLenum type = 0;
+        std::uint32_t texture = 0;  ///< OpenGL's name of it
+        std::uint32_t format = 0;   ///< a GLenum: how pixels are transferred, bit for bit
+        std::uint32_t type = 0;     ///< a GLenum: the type of a pixel's components as they are transferred
         int mip = 0;
         int side = 0;
         int texel_bytes = 0;

@@ -1,18 +1,19 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <vector>
+
+#include "renderer/pool/round.h"
 
 namespace cairn::renderer {
 
 /// Which of a fixed number of places are free, and when each was last used: what a cache needs to recycle the
 /// one not used for longest (Crassin et al. 2008, section 4.3).
 ///
-/// Time is counted in rounds: one round is one pass of rays and the production that follows it. What was
-/// given out or pinned in the current round is never taken away in it.
+/// Time is counted in rounds. What was given out or pinned in the current round is never taken away in it.
 class Lru {
 public:
-    explicit Lru(int count) : stamps_(std::size_t(count), 0) {
+    explicit Lru(int count) : stamps_(std::size_t(count)) {
         free_.reserve(std::size_t(count));
         for (int i = count - 1; i >= 0; --i)
             free_.push_back(i);
@@ -22,8 +23,8 @@ public:
     [[nodiscard]] int used_count() const { return count() - int(free_.size()); }
 
     /// The place was used in this round.
-    void touch(int place, std::uint32_t round) { stamps_[std::size_t(place)] = round; }
-    [[nodiscard]] std::uint32_t stamp(int place) const { return stamps_[std::size_t(place)]; }
+    void touch(int place, Round round) { stamps_[std::size_t(place)] = round; }
+    [[nodiscard]] Round stamp(int place) const { return stamps_[std::size_t(place)]; }
 
     /// Takes a free place, or returns -1.
     [[nodiscard]] int take_free() {
@@ -35,7 +36,7 @@ public:
     void release(int place) { free_.push_back(place); }
 
 private:
-    std::vector<std::uint32_t> stamps_;
+    std::vector<Round> stamps_;
     std::vector<int> free_;
 };
 

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 
 #include "base/error.h"
 #include "gl/limits.h"
@@ -46,10 +47,10 @@ Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes,
     tiles_.resize(entry_total);
     block_parent_.resize(std::size_t(blocks_.count()), none);
     block_child_blocks_.resize(std::size_t(blocks_.count()), 0);
-    block_birth_.resize(std::size_t(blocks_.count()), 0);
+    block_birth_.resize(std::size_t(blocks_.count()));
     slot_owner_.resize(std::size_t(brick_slots), none);
     slot_tile_.resize(std::size_t(brick_slots));
-    slot_birth_.resize(std::size_t(brick_slots), 0);
+    slot_birth_.resize(std::size_t(brick_slots));
     node_buffer_ = gl::Buffer(entry_total * sizeof(interop::NodeEntry), "node pool");
     node_buffer_.fill(0);
     node_texture_ = buffer_texture(GL_RGBA32UI, node_buffer_);
@@ -65,20 +66,20 @@ Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes,
     upload();
 }
 
-int Tree::bricks_used_since(std::uint32_t round) const {
+int Tree::bricks_used_since(Round round) const {
     int used = 0;
     for (int slot = 0; slot < bricks_.count(); ++slot)
         used += slot_owner_[std::size_t(slot)] != none && bricks_.stamp(slot) >= round ? 1 : 0;
     return used;
 }
 
-void Tree::begin_round(std::uint32_t round, const std::vector<std::uint32_t>& brick_stamps) {
+void Tree::begin_round(Round round, const std::vector<std::uint32_t>& brick_stamps) {
     round_ = round;
     slots_sorted_ = false;
     blocks_gathered_ = false;
     for (int slot = 0; slot < bricks_.count(); ++slot) {
         const std::uint32_t owner = slot_owner_[std::size_t(slot)];
-        const std::uint32_t stamp = brick_stamps[std::size_t(slot)];
+        const Round stamp{brick_stamps[std::size_t(slot)]};
         if (owner == none || stamp <= bricks_.stamp(slot)) continue;
         bricks_.touch(slot, stamp);
         for (std::uint32_t entry = owner; entry != none; entry = parent_entry(entry)) {
@@ -131,7 +132,7 @@ void Tree::set_child_mask(std::uint32_t entry, glm::uvec2 mask) {
 
 std::optional<int> Tree::add_brick(std::uint32_t entry, bool may_stay) {
     pin_path(entry);
-    const std::uint32_t stamp = may_stay ? round_ : std::max(keep_since_, 1U) - 1;
+    const Round stamp = may_stay ? round_ : keep_since_ ? keep_since_->before() : Round{};
     const int slot = take_slot(stamp);
     if (slot < 0) return std::nullopt;
     bricks_.touch(slot, stamp);
@@ -143,7 +144,7 @@ std::optional<int> Tree::add_brick(std::uint32_t entry, bool may_stay) {
     return slot;
 }
 
-int Tree::take_slot(std::uint32_t limit) {
+int Tree::take_slot(Round limit) {
     if (const int slot = bricks_.take_free(); slot >= 0) return slot;
     if (!slots_sorted_) {
         old_slots_.clear();

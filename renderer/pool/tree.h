@@ -10,6 +10,7 @@
 #include "gl/buffer.h"
 #include "gl/handle.h"
 #include "renderer/pool/lru.h"
+#include "renderer/pool/round.h"
 #include "renderer/pool/tree_shape.h"
 #include "shaders/interop/pool.h"
 
@@ -47,7 +48,7 @@ public:
     }
     [[nodiscard]] int bricks_resident() const { return bricks_.used_count(); }  ///< orphans included
     /// Bricks that nodes hold and that were given out, or used by rays, in that round or later.
-    [[nodiscard]] int bricks_used_since(std::uint32_t round) const;
+    [[nodiscard]] int bricks_used_since(Round round) const;
 
     /// A brick whose node is gone.
     struct Orphan {
@@ -58,11 +59,11 @@ public:
 
     /// Starts a round; stamps what rays used in the pass before it, and their ancestors.
     /// @param brick_stamps  one a slot: the last round whose rays used it.
-    void begin_round(std::uint32_t round, const std::vector<std::uint32_t>& brick_stamps);
+    void begin_round(Round round, const std::vector<std::uint32_t>& brick_stamps);
 
-    /// What rays used in that round or later is not evicted until this is called again; 0: whatever this
-    /// round did not use may go.
-    void keep_since(std::uint32_t round) { keep_since_ = round; }
+    /// What rays used in that round or later is not evicted until this is called again. Without a round,
+    /// whatever the current one did not use may go.
+    void keep_since(std::optional<Round> round) { keep_since_ = round; }
 
     /// Still a question? An earlier answer of the round, or an eviction, may have settled it.
     [[nodiscard]] bool wants_children(std::uint32_t entry) const;
@@ -128,11 +129,11 @@ private:
         return block_parent_[block_of(entry)];
     }
     /// May what was last used then be evicted?
-    [[nodiscard]] bool is_old(std::uint32_t stamp) const {
-        return stamp < round_ && (keep_since_ == 0 || stamp < keep_since_);
+    [[nodiscard]] bool is_old(Round stamp) const {
+        return stamp < round_ && (!keep_since_ || stamp < *keep_since_);
     }
     /// One that was last used before `limit`, if none is free; -1: there is none.
-    [[nodiscard]] int take_slot(std::uint32_t limit);
+    [[nodiscard]] int take_slot(Round limit);
     [[nodiscard]] int take_block();
     [[nodiscard]] bool can_evict_block(int block) const;
     void evict_brick(int slot);
@@ -151,23 +152,23 @@ private:
     TreeShape shape_;
     Lru blocks_;
     Lru bricks_;
-    std::uint32_t round_ = 0;
-    std::uint32_t keep_since_ = 0;
+    Round round_;
+    std::optional<Round> keep_since_;
     std::vector<interop::NodeEntry> entries_;
     std::vector<Tile> tiles_;                  // of each entry
     std::vector<std::uint32_t> block_parent_;  // entry whose children the block holds
     std::vector<int> block_child_blocks_;      // how many of its entries have children
-    std::vector<std::uint32_t> block_birth_;   // the round that filled it
+    std::vector<Round> block_birth_;           // the round that filled it
     std::vector<std::uint32_t> slot_owner_;    // entry, or none: free, or an orphan's
     std::vector<Tile> slot_tile_;              // of those that are not free
-    std::vector<std::uint32_t> slot_birth_;    // the round that gave it out
+    std::vector<Round> slot_birth_;            // the round that gave it out
     std::unordered_map<Tile, Orphan, TileHash> orphans_;
     std::vector<Evicted> evicted_;
     bool records_evictions_ = false;
     std::vector<int> old_slots_;  // of this round, oldest last
     bool slots_sorted_ = false;
     /// Stamp and number of the blocks that may be taken away in this round: a heap, the oldest on top.
-    std::vector<std::pair<std::uint32_t, int>> old_blocks_;
+    std::vector<std::pair<Round, int>> old_blocks_;
     bool blocks_gathered_ = false;
     std::vector<std::uint32_t> dirty_;
     std::vector<std::uint32_t> means_;  // of each entry, RGBA8; empty without them

@@ -7,8 +7,11 @@
 #include "base/error.h"
 #include "shaders/interop/grid.h"
 #include "shaders/interop/pool.h"
+#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
+
+static_assert(max_window_tile_bits == WINDOW_TILE_BITS, "the shaders have other windows");
 
 /// Positions of voxels and their borders stay within 63 bits.
 constexpr int most_voxel_bits = 60;
@@ -85,10 +88,16 @@ TreeShape make_tree_shape(int n, int m, int max_resolution, bool with_mips) {
     return shape;
 }
 
+int deepest_level(int n, int m) {
+    check_factors(n, m);
+    const TreeShape shape{.n = n, .m = m};
+    return (most_voxel_bits - shape.m_shift()) / shape.n_shift();
+}
+
 TreeShape make_deep_tree_shape(int n, int m, int max_level) {
     check_factors(n, m);
     const TreeShape shape{.n = n, .m = m, .max_level = max_level};
-    const int most = (most_voxel_bits - shape.m_shift()) / shape.n_shift();
+    const int most = deepest_level(n, m);
     if (max_level < 0 || max_level > most) {
         throw Error(Fault::usage, "tree", fmt::format("{} levels are not between 0 and {}", max_level, most));
     }

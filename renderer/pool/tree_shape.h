@@ -6,9 +6,11 @@
 #include <glm/glm.hpp>
 
 #include "gl/shader_source.h"
-#include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
+
+/// The most that TreeShape::window_tile_bits can be (WINDOW_TILE_BITS in the shaders).
+constexpr int max_window_tile_bits = 16;
 
 /// The parameters of an N^3-tree with M^3 bricks (Crassin et al. 2008, section 4.1). Both are powers of one
 /// base, 2 or 3, so that all cells of the tree and of its bricks nest.
@@ -18,8 +20,8 @@ struct TreeShape {
     int max_level = 4;  ///< level of the finest tiles; the root is level 0
     int mips = 0;       ///< mip levels of a brick beside its own voxels, each twice as coarse: 0 or n_shift()
     /// Where rays go through windows, log2 of a tile's side in voxels there, at most: [m_shift(),
-    /// WINDOW_TILE_BITS].
-    int window_tile_bits = WINDOW_TILE_BITS;
+    /// max_window_tile_bits].
+    int window_tile_bits = max_window_tile_bits;
 
     /// What n and m are powers of, which are called their shifts.
     [[nodiscard]] int cell_base() const { return n == 3 ? 3 : 2; }
@@ -75,6 +77,9 @@ struct TreeShape {
 /// @throws Error (Fault::usage) likewise.
 [[nodiscard]] TreeShape make_deep_tree_shape(int n, int m, int max_level);
 
+/// The most levels under the root that make_deep_tree_shape() takes for n and m.
+[[nodiscard]] int deepest_level(int n, int m);
+
 /// A region of the regular subdivision: level 0 is the root cube, level l has n^l tiles across it.
 struct Tile {
     int level = 0;
@@ -108,9 +113,6 @@ struct TileHash {
 [[nodiscard]] inline bool may_hold(const glm::uvec2& child_mask, int n, int child) {
     const int bit = mask_bit(n, child);
     return (child_mask[bit / 32] >> (bit % 32) & 1U) != 0;
-}
-[[nodiscard]] inline Tile parent_of(const Tile& tile, int n) {
-    return {tile.level - 1, tile.position / std::int64_t(n)};
 }
 
 }  // namespace cairn::renderer

@@ -3,6 +3,8 @@
 #include <glm/glm.hpp>
 
 #include "renderer/pool/brick_pool.h"
+#include "renderer/pool/tree_shape.h"
+#include "renderer/produce/content_program.h"
 #include "renderer/produce/oracle.h"
 #include "renderer/produce/producer.h"
 #include "voxelizer/grid.h"
@@ -19,6 +21,8 @@ public:
     Content& operator=(Content&&) = delete;
     virtual ~Content() = default;
 
+    /// Of the tree that the content is made for.
+    [[nodiscard]] virtual const TreeShape& shape() const = 0;
     [[nodiscard]] virtual Oracle& oracle() = 0;
     [[nodiscard]] virtual Producer& producer() = 0;
     /// As many voxels as the finest level of the tree has.
@@ -27,6 +31,8 @@ public:
     [[nodiscard]] virtual bool has_color() const = 0;
     [[nodiscard]] virtual Channels channels() const { return {.color = has_color()}; }
     [[nodiscard]] virtual glm::vec3 uniform_color() const = 0;
+    /// How rays see it: like a surface, unless it says otherwise.
+    [[nodiscard]] virtual ContentProgram program() const { return {}; }
     /// Does the producer fill the mip levels of bricks (TreeShape::mips)?
     [[nodiscard]] virtual bool fills_mips() const { return false; }
     /// May the producer find tiles constant and not empty? Then the tree keeps their values, and rays march

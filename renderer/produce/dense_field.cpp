@@ -51,7 +51,9 @@ std::vector<std::uint16_t> resample(const scenes::Volume& volume, const FieldFra
             interpolation(size[axis], from[axis], frame.voxel_size / volume.spacing[axis]);
     std::vector<std::uint16_t> voxels(std::size_t(size.x * size.y * size.z));
     tbb::parallel_for(std::int64_t(0), size.z, [&](std::int64_t z) {
-        const auto& [xs, ys, zs] = along;
+        const auto& xs = along[0];
+        const auto& ys = along[1];
+        const auto& zs = along[2];
         const std::int64_t z0 = zs.before[std::size_t(z)];
         const std::int64_t z1 = std::min(z0 + 1, from.z - 1);
         for (std::int64_t y = 0; y < size.y; ++y) {

@@ -88,7 +88,7 @@ std::vector<Produced> FractalProducer::produce(std::span<const BrickRequest> req
 }
 
 FractalContent::FractalContent(const TreeShape& shape, const gl::ShaderSource& shaders)
-    : oracle_(shape), producer_(shape, shaders) {
+    : shape_(shape), oracle_(shape), producer_(shape, shaders) {
     grid_.resolution = glm::ivec3(grid_resolution(shape));
     grid_.voxel_size = 1.0 / grid_.resolution.x;
 }

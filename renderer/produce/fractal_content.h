@@ -64,6 +64,7 @@ class FractalContent final : public Content {
 public:
     explicit FractalContent(const TreeShape& shape, const gl::ShaderSource& shaders = {});
 
+    [[nodiscard]] const TreeShape& shape() const override { return shape_; }
     [[nodiscard]] Oracle& oracle() override { return oracle_; }
     [[nodiscard]] Producer& producer() override { return producer_; }
     [[nodiscard]] const voxelizer::Grid& grid() const override { return grid_; }
@@ -71,6 +72,7 @@ public:
     [[nodiscard]] glm::vec3 uniform_color() const override { return {0.72F, 0.62F, 0.45F}; }
 
 private:
+    TreeShape shape_;
     voxelizer::Grid grid_;
     FractalOracle oracle_;
     FractalProducer producer_;

@@ -6,7 +6,8 @@ namespace cairn::renderer {
 
 SurfaceContent::SurfaceContent(const TreeShape& shape, const voxelizer::Surface& surface,
                                const gl::ShaderSource& shaders)
-    : grid_(surface.grid),
+    : shape_(shape),
+      grid_(surface.grid),
       uniform_color_(surface.uniform_color),
       surface_(voxelizer::upload(surface)),
       lists_(tile_lists(shape, surface)),

@@ -17,6 +17,7 @@ public:
     SurfaceContent(const TreeShape& shape, const voxelizer::Surface& surface,
                    const gl::ShaderSource& shaders);
 
+    [[nodiscard]] const TreeShape& shape() const override { return shape_; }
     [[nodiscard]] Oracle& oracle() override { return oracle_; }
     [[nodiscard]] Producer& producer() override { return producer_; }
     [[nodiscard]] const voxelizer::Grid& grid() const override { return grid_; }
@@ -25,6 +26,7 @@ public:
     [[nodiscard]] glm::vec3 uniform_color() const override { return uniform_color_; }
 
 private:
+    TreeShape shape_;
     voxelizer::Grid grid_;
     glm::vec3 uniform_color_;
     voxelizer::GpuSurface surface_;

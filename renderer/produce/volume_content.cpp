@@ -203,11 +203,21 @@ void VolumeProducer::produce_batch(std::span<const BrickRequest> requests, const
 }
 
 VolumeContent::VolumeContent(const VolumeShape& shape, std::shared_ptr<const Field> field,
-                             const VisibleDensities& visible)
-    : field_(std::move(field)),
-      test_(visible),
+                             const TransferFunction& transfer, const VolumeOptions& options)
+    : shape_(shape),
+      field_(std::move(field)),
+      test_(transfer.visible()),
       grid_(grid_of(shape, field_->frame())),
+      steps_per_voxel_(options.steps_per_voxel),
+      table_(std::make_shared<TransferTable>(transfer, options, grid_.voxel_size)),
       oracle_(shape, *field_, test_),
       producer_(shape, *field_, test_) {}
+
+ContentProgram VolumeContent::program() const {
+    return {.primary = "march/volume.comp.glsl",
+            .shadow = "march/volume_shadow.comp.glsl",
+            .volume_steps = steps_per_voxel_,
+            .bind = [table = table_] { table->bind(); }};
+}
 
 }  // namespace cairn::renderer

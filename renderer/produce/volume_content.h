@@ -7,6 +7,8 @@
 
 #include "gl/buffer.h"
 #include "renderer/produce/content.h"
+#include "renderer/produce/transfer_function.h"
+#include "renderer/produce/transfer_table.h"
 #include "renderer/produce/volume_field.h"
 
 namespace cairn::renderer {
@@ -84,21 +86,27 @@ private:
 /// What is visible is fixed here: a transfer function that shows other densities needs another content.
 class VolumeContent final : public Content {
 public:
+    /// @throws Error (Fault::usage) for VolumeOptions out of range.
     VolumeContent(const VolumeShape& shape, std::shared_ptr<const Field> field,
-                  const VisibleDensities& visible);
+                  const TransferFunction& transfer, const VolumeOptions& options = {});
 
+    [[nodiscard]] const TreeShape& shape() const override { return shape_.tree; }
     [[nodiscard]] Oracle& oracle() override { return oracle_; }
     [[nodiscard]] Producer& producer() override { return producer_; }
     [[nodiscard]] const voxelizer::Grid& grid() const override { return grid_; }
     [[nodiscard]] bool has_color() const override { return false; }
     [[nodiscard]] Channels channels() const override { return {.color = false, .normal = false}; }
     [[nodiscard]] glm::vec3 uniform_color() const override { return glm::vec3(1.0F); }
+    [[nodiscard]] ContentProgram program() const override;
     [[nodiscard]] bool has_constant() const override { return true; }
 
 private:
+    VolumeShape shape_;
     std::shared_ptr<const Field> field_;
     DensityTest test_;
     voxelizer::Grid grid_;
+    int steps_per_voxel_;
+    std::shared_ptr<const TransferTable> table_;
     VolumeOracle oracle_;
     VolumeProducer producer_;
 };

@@ -42,7 +42,7 @@ std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, 
         sums_ = gl::Buffer(pixels * sizeof(interop::ShadowSum), "sums of shadow rays");
     }
     view_.write(0, &view, sizeof(view));
-    const gl::Program& lighting = programs_.get({mask_, view.shadow_rays > 1});
+    const gl::Program& lighting = programs_.get({mask_, view.is_soft != 0});
     lighting.set("mesh_first_row", receivers.first_row);
     lighting.set("mesh_shadows", 1);
     lighting.set("mesh_own_height", receivers.own_height);

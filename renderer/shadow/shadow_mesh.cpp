@@ -8,6 +8,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "gl/buffer_offset.h"
 #include "shaders/interop/shadow_map.h"
 
 namespace cairn::renderer {
@@ -159,7 +160,7 @@ void ShadowMesh::draw(const gl::Program& program) const {
         program.set("alpha_cutoff", draw.alpha_cutoff);
         glBindTextureUnit(TEXTURE_SHADOW_BASE_COLOR, textures_[draw.texture].id());
         glDrawElements(GL_TRIANGLES, GLsizei(draw.index_count), GL_UNSIGNED_INT,
-                       reinterpret_cast<const void*>(draw.first_index * sizeof(std::uint32_t)));
+                       gl::buffer_offset(draw.first_index * sizeof(std::uint32_t)));
     }
 }
 

@@ -32,7 +32,7 @@ public:
         if (glCheckNamedFramebufferStatus(id, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
             throw Error(Fault::context, "shadow projection",
                         fmt::format("\"{}\" cannot draw to it", gl::driver_name()),
-                        "choose another --context");
+                        "choose another ContextOptions::kind");
         }
     }
 

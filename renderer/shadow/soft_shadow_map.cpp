@@ -12,7 +12,6 @@
 #include "gl/context.h"
 #include "gl/draw_state.h"
 #include "gl/timer.h"
-#include "renderer/shadow/blend_state.h"
 
 namespace cairn::renderer {
 namespace {
@@ -42,7 +41,8 @@ gl::FramebufferHandle make_target(const gl::TextureHandle& first, const gl::Text
     glNamedFramebufferDrawBuffers(id, second != nullptr ? 2 : 1, buffers.data());
     if (glCheckNamedFramebufferStatus(id, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         throw Error(Fault::context, "soft shadow map",
-                    fmt::format("\"{}\" cannot draw to it", gl::driver_name()), "choose another --context");
+                    fmt::format("\"{}\" cannot draw to it", gl::driver_name()),
+                    "choose another ContextOptions::kind");
     }
     return framebuffer;
 }
@@ -63,7 +63,7 @@ void require_blending(GLenum format) {
     throw Error(
         Fault::context, "soft shadow map",
         fmt::format("\"{}\" does not blend {}-bit floats", gl::driver_name(), format == GL_R16F ? 16 : 32),
-        "choose another --context");
+        "choose another ContextOptions::kind");
 }
 
 ShadowMapValues read_map(const gl::TextureHandle& texture, int size) {
@@ -79,7 +79,7 @@ glm::vec4 vec_of(const ShadowWindow& window) {
     return {glm::vec2(window.low), glm::vec2(window.high)};
 }
 
-void check(const SoftShadowOptions& options) {
+void check_options(const SoftShadowOptions& options) {
     for (const int size : {options.occluder_size, options.receiver_size}) {
         if (size >= 1 && size <= max_size) continue;
         throw Error(Fault::usage, "soft shadow map", fmt::format("a map of {} texels a side", size),
@@ -87,7 +87,7 @@ void check(const SoftShadowOptions& options) {
     }
 }
 
-void check(const ShadowFrustum& frustum) {
+void check_frustum(const ShadowFrustum& frustum) {
     const auto spans = [](const ShadowWindow& window) {
         return window.low.x < window.high.x && window.low.y < window.high.y &&
                std::isfinite(window.low.x + window.low.y + window.high.x + window.high.y);
@@ -101,7 +101,7 @@ void check(const ShadowFrustum& frustum) {
 
 }  // namespace
 
-struct SoftShadowMap::Parts {
+struct SoftShadowMap::Impl {
     /// One set of micro-patches and what they hide.
     struct Pass {
         gl::TextureHandle occluders;
@@ -112,7 +112,7 @@ struct SoftShadowMap::Parts {
         std::size_t patch_count = 0;
     };
 
-    Parts(const SoftShadowOptions& chosen, const gl::ShaderSource& shaders);
+    Impl(const SoftShadowOptions& chosen, const gl::ShaderSource& shaders);
     void build_programs(const gl::ShaderSource& shaders);
     void build_targets();
     [[nodiscard]] int pass_count() const { return options.passes == ShadowPasses::two ? 2 : 1; }
@@ -144,16 +144,16 @@ struct SoftShadowMap::Parts {
     int pyramid_levels = 1;
 };
 
-SoftShadowMap::Parts::Parts(const SoftShadowOptions& chosen, const gl::ShaderSource& shaders)
+SoftShadowMap::Impl::Impl(const SoftShadowOptions& chosen, const gl::ShaderSource& shaders)
     : options(chosen) {
-    check(options);
+    check_options(options);
     require_blending(GL_R32F);
     if (options.format != ShadowFormat::fp32) require_blending(GL_R16F);
     build_programs(shaders);
     build_targets();
 }
 
-void SoftShadowMap::Parts::build_programs(const gl::ShaderSource& shaders) {
+void SoftShadowMap::Impl::build_programs(const gl::ShaderSource& shaders) {
     draw_map_program = gl::build_raster(shaders, "shadow/draw_map.vert.glsl", "shadow/draw_map.frag.glsl");
     reduce_base_program =
         gl::build_compute(shaders, "shadow/reduce_receivers.comp.glsl", {{"REDUCE_BASE", "1"}});
@@ -167,7 +167,7 @@ void SoftShadowMap::Parts::build_programs(const gl::ShaderSource& shaders) {
                                         {{"SHADOW_PASSES", std::to_string(pass_count())}});
 }
 
-void SoftShadowMap::Parts::build_targets() {
+void SoftShadowMap::Impl::build_targets() {
     const GLenum sums = options.format == ShadowFormat::fp32 ? GL_R32F : GL_R16F;
     const unsigned base = std::bit_ceil(unsigned(options.receiver_size));
     pyramid_levels = std::bit_width(base);
@@ -196,7 +196,7 @@ void SoftShadowMap::Parts::build_targets() {
     no_attributes = gl::VertexArrayHandle(id);
 }
 
-void SoftShadowMap::Parts::set_uniforms() const {
+void SoftShadowMap::Impl::set_uniforms() const {
     const glm::vec2 half_light(optics::half_size(light));
     for (const gl::Program* program : {&count_program, &list_program, &hide_program}) {
         program->set("occluder_window", vec_of(frustum.occluders));
@@ -214,8 +214,8 @@ void SoftShadowMap::Parts::set_uniforms() const {
     draw_map_program.set("near_distance", float(frustum.near_distance));
 }
 
-void SoftShadowMap::Parts::draw_map(const ShadowMesh& mesh, const ShadowWindow& window,
-                                    const gl::FramebufferHandle& target, int size) const {
+void SoftShadowMap::Impl::draw_map(const ShadowMesh& mesh, const ShadowWindow& window,
+                                   const gl::FramebufferHandle& target, int size) const {
     draw_map_program.use();
     draw_map_program.set("light_from_mesh", mesh.from_mesh(optics::light_from_world(light)));
     draw_map_program.set("window", vec_of(window));
@@ -226,7 +226,7 @@ void SoftShadowMap::Parts::draw_map(const ShadowMesh& mesh, const ShadowWindow& 
 
 /// No face is culled. Of closed surfaces the closest faces are those that look at the light, and the furthest
 /// those that look away, as Atty et al. have them; of open ones both sides hide light.
-void SoftShadowMap::Parts::draw_maps(const ShadowMesh& occluders, const ShadowMesh& receiver_mesh) const {
+void SoftShadowMap::Impl::draw_maps(const ShadowMesh& occluders, const ShadowMesh& receiver_mesh) const {
     clear(passes[0].occluders, 0.0F);
     if (pass_count() == 2) clear(passes[1].occluders, float(SHADOW_NONE));
     clear(receivers, 0.0F);
@@ -237,7 +237,7 @@ void SoftShadowMap::Parts::draw_maps(const ShadowMesh& occluders, const ShadowMe
     draw_map(receiver_mesh, frustum.receivers, receiver_target, options.receiver_size);
 }
 
-void SoftShadowMap::Parts::reduce_receivers() const {
+void SoftShadowMap::Impl::reduce_receivers() const {
     for (int level = 0; level < pyramid_levels; ++level) {
         const gl::Program& program = level == 0 ? reduce_base_program : reduce_program;
         program.use();
@@ -253,7 +253,7 @@ void SoftShadowMap::Parts::reduce_receivers() const {
     }
 }
 
-void SoftShadowMap::Parts::list_patches(Pass& pass) {
+void SoftShadowMap::Impl::list_patches(Pass& pass) {
     glBindTextureUnit(TEXTURE_SHADOW_OCCLUDERS, pass.occluders.id());
     glBindTextureUnit(TEXTURE_SHADOW_PYRAMID, pyramid.id());
     counts.bind_storage(SSBO_SHADOW_COUNTS);
@@ -286,8 +286,8 @@ void SoftShadowMap::Parts::list_patches(Pass& pass) {
     statistics.fragments += fragments[0] + (std::uint64_t(fragments[1]) << 32U);
 }
 
-void SoftShadowMap::Parts::draw_patches(const Pass& pass, std::size_t first, std::size_t count,
-                                        const gl::FramebufferHandle& target) const {
+void SoftShadowMap::Impl::draw_patches(const Pass& pass, std::size_t first, std::size_t count,
+                                       const gl::FramebufferHandle& target) const {
     hide_program.use();
     glBindVertexArray(pass.patch_array.id());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
@@ -296,7 +296,7 @@ void SoftShadowMap::Parts::draw_patches(const Pass& pass, std::size_t first, std
 
 /// In FP16 a large sum takes no small summand. So the patches of a batch are summed alone, and the batches'
 /// sums, which are larger, together (appendix A).
-void SoftShadowMap::Parts::hide_light(const Pass& pass) {
+void SoftShadowMap::Impl::hide_light(const Pass& pass) {
     clear(pass.hidden, 0.0F);
     if (pass.patch_count == 0) return;
     const std::size_t batches =
@@ -319,7 +319,7 @@ void SoftShadowMap::Parts::hide_light(const Pass& pass) {
     }
 }
 
-void SoftShadowMap::Parts::find_visible() const {
+void SoftShadowMap::Impl::find_visible() const {
     visible_program.use();
     glBindTextureUnit(TEXTURE_SHADOW_HIDDEN, passes[0].hidden.id());
     if (pass_count() == 2) glBindTextureUnit(TEXTURE_SHADOW_HIDDEN_FURTHEST, passes[1].hidden.id());
@@ -328,9 +328,8 @@ void SoftShadowMap::Parts::find_visible() const {
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-void SoftShadowMap::Parts::compute(const ShadowMesh& occluders, const ShadowMesh& receiver_mesh) {
+void SoftShadowMap::Impl::compute(const ShadowMesh& occluders, const ShadowMesh& receiver_mesh) {
     const gl::DrawStateGuard guard;
-    const BlendStateGuard blend_guard;
     statistics = {};
     set_uniforms();
     const gl::Timer maps, patches, hide, last;
@@ -364,49 +363,49 @@ void SoftShadowMap::Parts::compute(const ShadowMesh& occluders, const ShadowMesh
 }
 
 SoftShadowMap::SoftShadowMap(const SoftShadowOptions& options, const gl::ShaderSource& shaders)
-    : parts_(std::make_unique<Parts>(options, shaders)) {}
+    : impl_(std::make_unique<Impl>(options, shaders)) {}
 SoftShadowMap::SoftShadowMap(SoftShadowMap&&) noexcept = default;
 SoftShadowMap& SoftShadowMap::operator=(SoftShadowMap&&) noexcept = default;
 SoftShadowMap::~SoftShadowMap() = default;
 
 void SoftShadowMap::compute(const optics::Light& light, const ShadowFrustum& frustum,
                             const ShadowMesh& occluders, const ShadowMesh& receivers) {
-    check(frustum);
+    check_frustum(frustum);
     static_cast<void>(optics::light_from_world(light));
-    parts_->light = light;
-    parts_->frustum = frustum;
-    parts_->compute(occluders, receivers);
+    impl_->light = light;
+    impl_->frustum = frustum;
+    impl_->compute(occluders, receivers);
 }
 
 const SoftShadowOptions& SoftShadowMap::options() const {
-    return parts_->options;
+    return impl_->options;
 }
 const optics::Light& SoftShadowMap::light() const {
-    return parts_->light;
+    return impl_->light;
 }
 const ShadowFrustum& SoftShadowMap::frustum() const {
-    return parts_->frustum;
+    return impl_->frustum;
 }
 const SoftShadowStatistics& SoftShadowMap::statistics() const {
-    return parts_->statistics;
+    return impl_->statistics;
 }
 GLuint SoftShadowMap::visible_texture() const {
-    return parts_->visible.id();
+    return impl_->visible.id();
 }
 GLuint SoftShadowMap::receiver_texture() const {
-    return parts_->receivers.id();
+    return impl_->receivers.id();
 }
 ShadowMapValues SoftShadowMap::visible() const {
-    return read_map(parts_->visible, parts_->options.receiver_size);
+    return read_map(impl_->visible, impl_->options.receiver_size);
 }
 ShadowMapValues SoftShadowMap::receiver_inverse_depths() const {
-    return read_map(parts_->receivers, parts_->options.receiver_size);
+    return read_map(impl_->receivers, impl_->options.receiver_size);
 }
 ShadowMapValues SoftShadowMap::occluder_inverse_depths(int pass) const {
-    return read_map(parts_->passes[std::size_t(pass)].occluders, parts_->options.occluder_size);
+    return read_map(impl_->passes[std::size_t(pass)].occluders, impl_->options.occluder_size);
 }
 std::vector<interop::MicroPatch> SoftShadowMap::micro_patches(int pass) const {
-    const Parts::Pass& listed = parts_->passes[std::size_t(pass)];
+    const Impl::Pass& listed = impl_->passes[std::size_t(pass)];
     return listed.patch_count == 0 ? std::vector<interop::MicroPatch>()
                                    : listed.patches.read_all<interop::MicroPatch>(listed.patch_count);
 }

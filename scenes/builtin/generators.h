@@ -7,7 +7,7 @@
 
 #include "scenes/scene.h"
 
-/// The generators behind builtin.h, one a file, and the few steps that they share.
+/// The generators behind builtin.h, one per file, and the few steps that they share.
 namespace cairn::scenes {
 
 enum class Leaves { triangles, masked_cards };

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double radius = 0.32;
 constexpr double spacing = 0.4;  ///< from a group's centre to its spheres, along each axis
-constexpr double group_spacing =
-    1.2;  ///< from the scene's centre to its groups: three times the former, so none touch
+/// From the scene's centre to the groups': three times the spacing within them, so that no two groups touch.
+constexpr double group_spacing = 1.2;
 
 /// A sphere of 2 * segments * (bands - 1) triangles, closed: the poles and the seam are shared vertices.
 Primitive make_sphere(std::uint32_t segments, std::uint32_t bands) {

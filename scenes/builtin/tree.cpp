@@ -12,8 +12,8 @@
 namespace cairn::scenes {
 namespace {
 
-constexpr double golden_angle =
-    2.399963229728653;  ///< of a full turn in radians: neighbours never stand in line
+/// Radians; the golden section of a full turn, so that neighbours never stand in line.
+constexpr double golden_angle = 2.399963229728653;
 
 /// One order of branches: how finely its tubes are cut, and how it stands on the order before.
 struct Order {
@@ -43,7 +43,7 @@ struct Branch {
     std::size_t order = 0;
     double length = 0.0;
     std::vector<glm::dvec3> points;
-    std::vector<glm::dvec3> directions;  ///< unit, one a point
+    std::vector<glm::dvec3> directions;  ///< of length 1, one per point
     std::vector<double> radii;
 };
 
@@ -90,7 +90,8 @@ private:
     Primitive& foliage_;
     Leaves leaves_;
     RandomStream random_{607608};
-    RandomStream leaf_random_{6848};  ///< apart, so that both kinds of leaves stand on the same branches
+    /// Apart, so that both kinds of leaves stand on the same branches.
+    RandomStream leaf_random_{6848};
 };
 
 void TreeGrower::grow_branch(std::size_t order, glm::dvec3 foot, glm::dvec3 direction, double length,

@@ -14,15 +14,15 @@ namespace cairn::scenes::gltf {
 
 /// The elements of an accessor where they lie, all ranges checked: element i begins at data + i * stride.
 struct Elements {
-    std::string where;                   ///< for messages
+    std::string where;                   ///< names the accessor in messages
     const std::uint8_t* data = nullptr;  ///< null: every component is 0
     std::size_t stride = 0;
     std::size_t count = 0;
     int width = 0;  ///< components of an element: 1, 2, 3, 4, 9 or 16
     int component = TINYGLTF_COMPONENT_TYPE_FLOAT;
     bool normalized = false;
-    std::shared_ptr<const std::vector<std::uint8_t>>
-        storage;  ///< what `data` points into when it was made here
+    /// Owns what `data` points into if the elements were made here and do not lie in a buffer.
+    std::shared_ptr<const std::vector<std::uint8_t>> storage;
 };
 
 /// Which elements to read, in which order; empty = all.

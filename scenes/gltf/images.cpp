@@ -60,7 +60,7 @@ Image decode_image(const std::string& where, std::span<const std::uint8_t> file,
     budget.grant(file.size());
     budget.charge(where, bytes, 1);
 
-    // 16 bits a channel and one filter byte a row; zlib's buffer grows by doubling.
+    // 16 bits per channel and one filter byte per row; zlib's buffer grows by doubling.
     largest_block = 2 * (2 * bytes + static_cast<std::size_t>(height)) + (1U << 20U);
     const std::unique_ptr<stbi_uc, decltype(&std::free)> texels(
         stbi_load_from_memory(file.data(), file_bytes, &width, &height, &channels, 4), &std::free);

@@ -29,9 +29,10 @@ struct Reader {
     Buffers buffers{source, budget};
     Accessors accessors{source, buffers, budget};
     Scene scene;
-    std::vector<int> texcoord_sets;  ///< for each material: the set of its base colour texture, or -1
-    std::vector<std::uint32_t>
-        joints_needed;  ///< for each mesh: one more than the largest joint that it names
+    /// Per material, the number of the set of coordinates that its base colour texture uses; -1: no texture.
+    std::vector<int> texcoord_sets;
+    /// Per mesh, one more than the largest joint that it names.
+    std::vector<std::uint32_t> joints_needed;
 
     /// Adds a warning, once.
     void warn(const std::string& text);

@@ -12,11 +12,11 @@ enum class Kind {
     number,
     numbers,
     whole,      ///< 0, 1, 2, ... up to 2^53
-    whole_int,  ///< the same, up to 2^31 - 1: what tinygltf keeps in an int
+    whole_int,  ///< 0, 1, 2, ... up to 2^31 - 1: what tinygltf keeps in an int
     index,      ///< into the array `target`
     indices,
     index_map,   ///< an object of indices: the attributes of a primitive
-    index_maps,  ///< its morph targets
+    index_maps,  ///< an array of such objects: the morph targets of a primitive
     any_object,  ///< kept as it is
     object,
     objects,
@@ -30,7 +30,8 @@ struct Property {
     Kind kind;
     bool required = false;
     const char* target = nullptr;  ///< index kinds: JSON pointer to the array that they point into
-    std::size_t length = 0;  ///< numbers: how many, 0 = any; objects: at most how many, 0 = most_elements
+    /// Numbers: how many, 0 = any; objects: at most how many, 0 = most_elements.
+    std::size_t length = 0;
     const Shape* inside = nullptr;  ///< object, objects
     const char* label = "";         ///< objects: what messages call one of them
 };

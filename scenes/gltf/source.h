@@ -26,11 +26,11 @@ struct ImageSource {
 
 /// A glTF file, parsed and checked against schema.h, not yet converted.
 struct Source {
-    std::string name;  ///< for messages: the file's name without its folder
+    std::string name;  ///< the file's name without its folder, for messages
     std::filesystem::path folder;
     bool trust_paths = false;
     std::vector<std::uint8_t> file;           ///< the whole .glb; empty for .gltf
-    std::span<const std::uint8_t> glb_chunk;  ///< its binary chunk, inside `file`
+    std::span<const std::uint8_t> glb_chunk;  ///< the binary chunk of the .glb, inside `file`
     std::uint64_t json_bytes = 0;
     std::vector<BufferSource> buffers;
     std::vector<ImageSource> images;

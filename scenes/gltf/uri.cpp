@@ -104,7 +104,7 @@ std::filesystem::path resolve_uri(const std::string& where, std::string_view uri
     if (decoded.find('\0') != std::string::npos) fail(where, "its URI holds a zero byte");
     const auto path = std::filesystem::path(decoded).lexically_normal();
     if (!trust_paths) {
-        constexpr const char* way_out = "if you trust the file, allow it with --trust-paths";
+        constexpr const char* way_out = "if you trust the file, allow it with LoadOptions::trust_paths";
         if (path.is_absolute())
             fail(where, fmt::format("its URI {} is an absolute path", in_quotes(uri)), way_out);
         if (!path.empty() && *path.begin() == "..")

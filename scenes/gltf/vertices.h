@@ -14,10 +14,10 @@ struct VertexSource {
     Reader& reader;
     const std::string& where;
     const std::map<std::string, int>& attributes;     ///< accessors
-    const std::map<std::string, Elements>& unpacked;  ///< Draco's, which stand before the accessors
-    Elements positions;                               ///< of all vertices of the file
+    const std::map<std::string, Elements>& unpacked;  ///< what Draco held; it stands before the accessors
+    Elements positions;                               ///< the positions of all vertices of the file
     std::vector<std::uint32_t> kept;                  ///< the vertices to read; empty = all
-    std::size_t count = 0;                            ///< how many these are
+    std::size_t count = 0;                            ///< number of vertices to read
 
     [[nodiscard]] bool has(const std::string& name) const { return attributes.contains(name); }
     [[nodiscard]] Elements elements(const std::string& name) const;

@@ -4,8 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <memory>
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -178,7 +180,9 @@ Volume decode(const std::string& name, const Layout& layout, std::span<const std
     if (bytes.size() < needed)
         fail(name, fmt::format("its samples take {} bytes, and it holds {}", needed, bytes.size()));
     const std::size_t count = needed / bytes_of(layout.type);
-    auto [volume, strides, first] = place(name, layout);
+    Placed placed = place(name, layout);
+    Volume& volume = placed.volume;
+    const std::array<std::int64_t, 3>& strides = placed.strides;
 
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
@@ -213,13 +217,14 @@ Volume decode(const std::string& name, const Layout& layout, std::span<const std
         const auto k = std::int64_t(index / i_count / j_count);
         const double stored =
             std::isfinite(value) ? std::clamp((value - volume.low) * scale, 0.0, most_value) : 0.0;
-        volume.samples[std::size_t(first + i * strides[0] + j * strides[1] + k * strides[2])] =
+        volume.samples[std::size_t(placed.first + i * strides[0] + j * strides[1] + k * strides[2])] =
             std::uint16_t(std::lround(stored));
     });
-    return std::move(volume);
+    return std::move(placed.volume);
 }
 
 std::vector<std::byte> read_file(const std::string& name, const std::string& path) {
+    if (std::filesystem::is_directory(path)) fail(name, "it is a folder", "name a file");
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) fail(name, "it cannot be opened", "check the path and the permissions");
     const std::streamoff size = file.tellg();
@@ -235,10 +240,7 @@ std::vector<std::byte> inflate(const std::string& name, std::span<const std::byt
     z_stream stream{};
     if (inflateInit2(&stream, 15 + 32) != Z_OK)  // zlib or gzip, by its first bytes
         throw Error(Fault::memory, name, "there is no memory to unpack it");
-    struct End {
-        z_stream* stream;
-        ~End() { inflateEnd(stream); }
-    } const end{&stream};
+    const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, inflateEnd);
     constexpr std::size_t chunk = std::size_t(1) << 30U;  // zlib counts in 32 bits
     std::vector<std::byte> bytes;
     std::size_t taken = 0;

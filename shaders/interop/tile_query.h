@@ -15,6 +15,7 @@
 #define QUERY_COUNTS 65536
 #define QUERY_CHILDREN 0  // the node must be subdivided
 #define QUERY_BRICK 1     // the node's brick must be produced
+#define QUERY_STAND_IN 2  // the node's brick could stand in for what is missing below it
 // Of the queries that find no room, one of each rank is kept, behind the counts: for the children of a node,
 // the rank is its level; then bricks; then the missing tiles of windows, each its own. So the CPU always
 // learns of the most urgent one.

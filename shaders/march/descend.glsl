@@ -196,7 +196,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
         }
 #if PROGRESSIVE
         if (brick_slot(node) >= 0 || is_constant(node)) ancestor = ancestor_of(node, entry, place.tile_shift);
-        else ask(2u * entry_count + entry);
+        else ask(query_word(entry, QUERY_STAND_IN));
 #endif
         if (!has_children(node)) {
             query(entry, QUERY_CHILDREN, level_of_tile(ray, place.tile_shift));

@@ -20,6 +20,7 @@
 #include "base/error.h"
 #include "shaders/interop/pool.h"
 #include "shaders/interop/shadow_rays.h"
+#include "shaders/interop/volume.h"
 
 namespace cairn::test {
 namespace {
@@ -87,6 +88,19 @@ std::string RandomTexts::of(const std::string& option) {
         {"--brick-pool", [&] { return whole(1, 4096); }},
         {"--brick-cache", [&] { return whole(0, 4096); }},
         {"--pixel-error", [&] { return number(0.001, 1000.0); }},
+        {"--tree-n", [&] { return whole(2, 8); }},
+        {"--brick-m", [&] { return whole(8, 81); }},
+        {"--traversal",
+         [&] {
+             return any_of({"restart", "stackless", "mini-stack"});
+         }},
+        {"--tile-queries",
+         [&] {
+             return any_of({"list", "blocks"});
+         }},
+        {"--frame-budget", [&] { return number(0.0, 1000.0); }},
+        {"--steps-per-voxel", [&] { return whole(1, VOLUME_MOST_STEPS); }},
+        {"--gradient-threshold", [&] { return number(0.0, 1.0); }},
         {"--level-of-detail",
          [&] {
              return any_of({"nearest", "blended"});
@@ -200,6 +214,7 @@ TEST(OptionTable, GridsArePrintedAsTheyAreRead) {
 
 TEST(OptionTable, ViewsArePrintedAsTheyAreRead) {
     expect_round_trips(app::view_table());
+    expect_round_trips(app::frame_table());
     expect_round_trips(app::zoom_table());
 }
 
@@ -211,7 +226,7 @@ TEST(OptionTable, DefaultsAreLeftOutAndNamedInTheHelp) {
     EXPECT_EQ(app::command_line(app::view_table(), ViewOptions{}), "");
     CLI::App verb;
     ViewOptions options;
-    options.view.width = 123;
+    options.view.size.width = 123;
     app::add_table(verb, app::view_table(), options);
     EXPECT_NE(verb.help().find("pixels (default: 123x512)"), std::string::npos) << verb.help();
     EXPECT_NE(verb.help().find("none|hard|soft"), std::string::npos) << verb.help();
@@ -250,6 +265,7 @@ TEST(OptionTable, TheCommandOfAPictureIsReadAsTheSameView) {
         }
         const ViewOptions options = parsed(app::view_table(), words);
         renderer::View view = options.view;
+        view.shadow = app::shadow_of(options);
         view.camera = app::snapped(view.camera);
         SceneOptions scene;
         scene.scene = "it's a \"scene\" of $HOME.glb";
@@ -271,11 +287,15 @@ TEST(OptionTable, TheCommandOfAPictureIsReadAsTheSameView) {
         typed.erase(typed.begin(), typed.begin() + 2);
         std::reverse(typed.begin(), typed.end());
         verb.parse(typed);
+        again.view.shadow = app::shadow_of(again);
         EXPECT_TRUE(again.view == view) << line;
-        EXPECT_EQ(again.tree.max_resolution, options.tree.max_resolution);
-        EXPECT_EQ(again.tree.mips, options.tree.mips);
-        EXPECT_EQ(again.tree.brick_pool_bytes, options.tree.brick_pool_bytes);
-        EXPECT_EQ(again.tree.brick_cache_bytes, options.tree.brick_cache_bytes);
+        EXPECT_EQ(again.tree_n, options.tree_n);
+        EXPECT_EQ(again.brick_m, options.brick_m);
+        EXPECT_EQ(again.max_resolution, options.max_resolution);
+        EXPECT_TRUE(again.pools == options.pools) << line;
+        EXPECT_TRUE(again.march == options.march) << line;
+        EXPECT_EQ(again.steps_per_voxel, options.steps_per_voxel);
+        EXPECT_EQ(again.gradient_threshold, options.gradient_threshold);
         EXPECT_EQ(again.copies, options.copies);
         EXPECT_EQ(scene_again.scene, scene.scene);
         EXPECT_EQ(scene_again.seconds, scene.seconds);

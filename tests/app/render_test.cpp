@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #define STB_IMAGE_IMPLEMENTATION
@@ -178,6 +179,74 @@ TEST(AppRender, ResolutionIsBounded) {
             .get<int>();
     };
     EXPECT_LT(bricks("32"), bricks("2048"));
+}
+
+TEST(AppRender, TraversalsAndTileQueriesMakeTheSamePictureInAnotherWay) {
+    const ScratchFolder folder;
+    const auto render = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> run = {"render", "builtin:knot", "--size",
+                                        "96x64",  "-o",           folder.file("p.png")};
+        run.insert(run.end(), options.begin(), options.end());
+        const auto figures = cairn_json(run);
+        return std::pair(figures, read_text(folder.file("p.png")));
+    };
+    const auto [usual, expected] = render({});
+    EXPECT_EQ(usual["tree_n"], 4);
+    EXPECT_EQ(usual["brick_m"], 16);
+    EXPECT_EQ(usual["traversal"], "mini-stack");
+    EXPECT_EQ(usual["tile_query_method"], "list");
+    EXPECT_EQ(usual["converged"], true);
+    for (const char* traversal : {"restart", "stackless"}) {
+        const auto [figures, picture] = render({"--traversal", traversal});
+        EXPECT_EQ(figures["traversal"], traversal);
+        EXPECT_TRUE(picture == expected) << traversal;
+    }
+    const auto [blocks, by_blocks] = render({"--tile-queries", "blocks"});
+    EXPECT_EQ(blocks["tile_query_method"], "blocks");
+    EXPECT_TRUE(by_blocks == expected);
+    EXPECT_GT(blocks["passes"], usual["passes"]);
+}
+
+TEST(AppRender, TreesHaveTheShapeThatIsAskedFor) {
+    const ScratchFolder folder;
+    // Both have 64 voxels across the scene, all of which are as wide as several pixels.
+    const auto render = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> run = {"render", "builtin:cornell",   "--size",
+                                        "96x64",  "--max-resolution",  "64",
+                                        "-o",     folder.file("p.png")};
+        run.insert(run.end(), options.begin(), options.end());
+        const auto figures = cairn_json(run);
+        return std::pair(figures, Picture(folder.file("p.png")));
+    };
+    const auto [usual, expected] = render({});
+    const auto [binary, picture] = render({"--tree-n", "2", "--brick-m", "8"});
+    EXPECT_EQ(binary["tree_n"], 2);
+    EXPECT_EQ(binary["brick_m"], 8);
+    EXPECT_GT(binary["bricks_produced"], usual["bricks_produced"]);
+    EXPECT_NEAR(picture.brightness(), expected.brightness(), 0.5);
+    const auto [thirds, other] = render({"--tree-n", "3"});
+    EXPECT_EQ(thirds["brick_m"], 27);
+}
+
+TEST(AppRender, AFrameWithinABudgetShowsWhatThereIs) {
+    const ScratchFolder folder;
+    const auto render = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> run = {"render", "builtin:knot", "--size",
+                                        "96x64",  "-o",           folder.file("p.png")};
+        run.insert(run.end(), options.begin(), options.end());
+        const auto figures = cairn_json(run);
+        return std::pair(figures, read_text(folder.file("p.png")));
+    };
+    const auto [whole, expected] = render({});
+    EXPECT_FALSE(whole.contains("frame_budget_ms"));
+    const auto [none, picture] = render({"--frame-budget", "0"});
+    EXPECT_EQ(none["frame_budget_ms"], 0.0);
+    EXPECT_EQ(none["converged"], false);
+    EXPECT_LT(none["bricks_produced"], whole["bricks_produced"]);
+    EXPECT_FALSE(picture == expected);
+    const auto [ample, same] = render({"--frame-budget", "600000"});
+    EXPECT_EQ(ample["converged"], true);
+    EXPECT_TRUE(same == expected);
 }
 
 }  // namespace

@@ -153,6 +153,22 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{render({"--shadow", "blurred"}), "choose none, hard or soft"},
                       Wrong{render({"--max-resolution", "0"}), "--max-resolution"},
                       Wrong{render({"--brick-pool", "lots"}), "--brick-pool"},
+                      Wrong{render({"--tree-n", "9"}), "from 2 to 8"},
+                      Wrong{render({"--tree-n", "5"}), "N = 5"}, Wrong{render({"--brick-m", "12"}), "M = 12"},
+                      Wrong{render({"--brick-m", "7"}), "from 8 to 81"},
+                      Wrong{render({"--brick-m", "64", "--max-resolution", "32"}), "less than a brick, 64"},
+                      Wrong{render({"--traversal", "random"}), "restart, stackless or mini-stack"},
+                      Wrong{render({"--tile-queries", "all"}), "list or blocks"},
+                      Wrong{render({"--tile-queries", "blocks", "--frame-budget", "5"}), "choose lists"},
+                      Wrong{render({"--frame-budget", "-1"}), "between 0"},
+                      Wrong{render({"--frame-budget", "soon"}), "is not a number"},
+                      Wrong{render({"--steps-per-voxel", "2"}), "the scene is no volume"},
+                      Wrong{render({"--gradient-threshold", "0.1"}), "the scene is no volume"},
+                      Wrong{{"render", "builtin:ball", "--steps-per-voxel", "33"}, "from 1 to 32"},
+                      Wrong{{"render", "builtin:ball", "--gradient-threshold", "2"}, "between 0 and 1"},
+                      Wrong{{"render", "builtin:sponge", "--tree-n", "2"}, "choose N = 3"},
+                      Wrong{{"render", "builtin:fractal", "--tree-n", "3"}, "choose N = 2, 4 or 8"},
+                      Wrong{{"shadow", "builtin:knot", "--method", "voxel", "--tree-n", "2"}, "--tree-n"},
                       Wrong{render({"-o", "picture.jpg"}), "what this verb writes ends in .png"}));
 
 TEST(AppInput, MissingFileIsCode3) {
@@ -178,6 +194,19 @@ TEST(AppInput, DamagedFilesAreCode3AndLeaveNoOutput) {
                      3, name);
         EXPECT_EQ(folder.file_count(), before) << name << " left something behind";
     }
+}
+
+TEST(AppInput, APathThatIsNotTrustedNamesTheOptionThatTrustsIt) {
+    const ScratchFolder folder;
+    write_text(folder.path() / "away.gltf",
+               R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "../away.bin", "byteLength": 4}]})");
+    expect_error(cairn({"info", folder.file("away.gltf")}), 3,
+                 "if you trust the file, allow it with --trust-paths");
+}
+
+TEST(AppUsage, AMethodThatDoesNotExistIsNamedWithItsOption) {
+    expect_error(cairn({"voxelize", "builtin:cornell", "-r", "8", "--method", "cubes"}), 2,
+                 "--method: there is no method \"cubes\"");
 }
 
 TEST(AppInput, ControlCharactersOfAFileStayOutOfTheTerminal) {
@@ -335,6 +364,7 @@ TEST(AppDriver, WithoutOpenGl45EglNamesTheDriverAndWhatItOffers) {
     const Answer answer = cairn({"voxelize", "builtin:cornell", "-r", "16", "--context", "egl"}, old_driver);
     expect_error(answer, 4, "driver \"");
     expect_contains(answer.err, "4.5 core is needed, it offers 3.3");
+    expect_contains(answer.err, "update the driver, or choose another --context");
 }
 
 #ifdef CAIRN_HAS_OSMESA

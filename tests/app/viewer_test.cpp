@@ -14,6 +14,7 @@
 #include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
@@ -134,12 +135,12 @@ TEST(Pace, FindsThePixelsThatFitTheTime) {
 class ViewerTest : public GlTest {
 protected:
     ViewerTest() : scene_(scenes::make_builtin("knot")) {
-        view_.width = 200;
-        view_.height = 150;
+        view_.size.width = 200;
+        view_.size.height = 150;
         view_.camera = app::snapped(optics::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0));
     }
-    [[nodiscard]] renderer::Renderer make(const renderer::TreeOptions& options = {}) const {
-        return renderer::Renderer(scene_, scenes::take_snapshot(scene_), options);
+    [[nodiscard]] renderer::Renderer make(const Settings& options = {}) const {
+        return voxel_renderer(scene_, scenes::take_snapshot(scene_), options);
     }
     /// Lets it work until it rests. @return the pieces of work that it took
     static int rest(app::Viewer& viewer, double& now) {
@@ -157,22 +158,25 @@ protected:
 
 TEST_F(ViewerTest, RowsAreThoseOfTheWholePicture) {
     renderer::Renderer renderer = make();
-    const optics::Image whole = renderer.render(view_);
+    const optics::Image whole = renderer.render(view_).image;
     std::vector<std::uint8_t> rows;
-    for (int row = 0; row < view_.height; row += 37) {
-        const renderer::Rows some{row, std::min(37, view_.height - row)};
+    for (int row = 0; row < view_.size.height; row += 37) {
+        const renderer::Rows some{row, std::min(37, view_.size.height - row)};
         renderer.forget_picture();
         const optics::Image image =
-            row % 2 == 0 ? renderer.render_rows(view_, some) : renderer.render_rows_within(view_, some, 1e9);
+            row % 2 == 0
+                ? renderer.render(view_, {.rows = some}).image
+                : renderer.render(view_, {.rows = some, .budget = renderer::Milliseconds(1e9)}).image;
         rows.insert(rows.end(), image.rgba.begin(), image.rgba.end());
     }
     EXPECT_EQ(rows, whole.rgba);
     for (const renderer::Rows wrong : {renderer::Rows{-1, 2}, {0, 0}, {149, 2}, {0, 151}})
-        EXPECT_THROW((void)renderer.render_rows(view_, wrong), Error) << wrong.first << " " << wrong.count;
+        EXPECT_THROW((void)renderer.render(view_, {.rows = wrong}), Error)
+            << wrong.first << " " << wrong.count;
 }
 
 TEST_F(ViewerTest, RefinesInSlicesToTheUnlimitedPicture) {
-    const optics::Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_).image;
     renderer::Renderer renderer = make();
     app::Pace pace(1e-3, 4096.0);  // no time at all
     app::Refinement refinement(view_);
@@ -185,10 +189,10 @@ TEST_F(ViewerTest, RefinesInSlicesToTheUnlimitedPicture) {
 }
 
 TEST_F(ViewerTest, PictureThatThePoolsCannotHoldIsStillTaken) {
-    renderer::TreeOptions options;
-    options.brick_pool_bytes = 1U << 20U;
-    view_.pixel_error = 0.5;
-    const optics::Image expected = make().render(view_);
+    Settings options;
+    options.pools.brick_bytes = 1U << 20U;
+    view_.detail.pixel_error = 0.5;
+    const optics::Image expected = make().render(view_).image;
     renderer::Renderer renderer = make(options);
     app::Viewer viewer(renderer, view_, 4.0);
     viewer.command(Command::take_picture);
@@ -205,8 +209,8 @@ TEST_F(ViewerTest, PictureThatThePoolsCannotHoldIsStillTaken) {
         largest = std::max(largest, difference);
     }
     EXPECT_EQ(differing, 0) << "channels differ, by up to " << largest << ", from pixel ("
-                            << first % std::size_t(view_.width) << ", " << first / std::size_t(view_.width)
-                            << ") on";
+                            << first % std::size_t(view_.size.width) << ", "
+                            << first / std::size_t(view_.size.width) << ") on";
 }
 
 TEST_F(ViewerTest, EveryInputIsShownAndComesToRestAgain) {
@@ -215,7 +219,7 @@ TEST_F(ViewerTest, EveryInputIsShownAndComesToRestAgain) {
     double now = 0.0;
     rest(viewer, now);
     ASSERT_TRUE(viewer.converged());
-    EXPECT_EQ(viewer.growing().image().rgba, make().render(view_).rgba);
+    EXPECT_EQ(viewer.growing().image().rgba, make().render(view_).image.rgba);
 
     const auto expect_change = [&](const char* what) {
         EXPECT_EQ(viewer.rest(now), 0.0) << what << " was not seen";
@@ -224,7 +228,7 @@ TEST_F(ViewerTest, EveryInputIsShownAndComesToRestAgain) {
         EXPECT_EQ(viewer.frame_ms().size(), frames + 1) << what;
         EXPECT_TRUE(viewer.converged()) << what;
         renderer.forget_picture();
-        EXPECT_EQ(viewer.growing().image().rgba, renderer.render(viewer.view()).rgba) << what;
+        EXPECT_EQ(viewer.growing().image().rgba, renderer.render(viewer.view()).image.rgba) << what;
     };
     viewer.drag_left({0.1, 0.05});
     expect_change("orbit");
@@ -259,11 +263,11 @@ TEST_F(ViewerTest, EveryInputIsShownAndComesToRestAgain) {
 
 TEST_F(ViewerTest, TreeIsShownByLevelsAndBricks) {
     renderer::Renderer renderer = make();
-    const optics::Image surface = renderer.render(view_);
+    const optics::Image surface = renderer.render(view_).image;
     view_.show = renderer::Show::bricks;
-    const optics::Image bricks = renderer.render(view_);
+    const optics::Image bricks = renderer.render(view_).image;
     view_.show = renderer::Show::levels;
-    const optics::Image levels = renderer.render(view_);
+    const optics::Image levels = renderer.render(view_).image;
     std::size_t covered = 0, of_level = 0, marked = 0;
     // One level holds the whole knot at this size: all its pixels have the hue of that level.
     for (std::size_t i = 0; i < surface.rgba.size(); i += 4) {

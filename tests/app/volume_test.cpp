@@ -1,9 +1,13 @@
 // Volumes on the command line.
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "app/options/transfer_option.h"
+#include "renderer/open_content.h"
 #include "tests/support/command.h"
 #include "tests/support/scratch_folder.h"
 
@@ -46,6 +50,38 @@ TEST_F(VolumeCommand, RenderMakesAPictureAndCountsVoxels) {
         cairn_json({"render", "builtin:ball", "--size", "32x24", "--max-resolution", "64", "--transfer",
                     "0:1,1,1:0;1:1,0.5,0:0.3", "-o", path("ball.png")});
     EXPECT_EQ(ball.at("voxels"), nlohmann::json({64, 64, 64}));
+}
+
+TEST_F(VolumeCommand, StepsAndGradientsChangeThePicture) {
+    const auto render = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> run = {"render",           "builtin:ball", "--size", "48x36",
+                                        "--max-resolution", "64",           "-o",     path("ball.png")};
+        run.insert(run.end(), options.begin(), options.end());
+        const nlohmann::json json = cairn_json(run);
+        return std::pair(json, read_text(path("ball.png")));
+    };
+    const auto [usual, expected] = render({});
+    EXPECT_EQ(usual.at("steps_per_voxel"), 2);
+    EXPECT_EQ(usual.at("gradient_threshold"), 0.08);
+    const auto [same, repeated] = render({"--steps-per-voxel", "2", "--gradient-threshold", "0.08"});
+    EXPECT_TRUE(repeated == expected);
+    const auto [fine, by_steps] = render({"--steps-per-voxel", "16"});
+    EXPECT_EQ(fine.at("steps_per_voxel"), 16);
+    EXPECT_FALSE(by_steps == expected);
+    const auto [fog, as_fog] = render({"--gradient-threshold", "0"});
+    EXPECT_EQ(fog.at("gradient_threshold"), 0.0);
+    EXPECT_FALSE(as_fog == expected);
+}
+
+TEST(TransferOption, TheDefaultIsTheLibrarys) {
+    const std::vector<renderer::ControlPoint> ours = app::parse_transfer(app::default_transfer).points;
+    const std::vector<renderer::ControlPoint> theirs = renderer::default_transfer();
+    ASSERT_EQ(ours.size(), theirs.size());
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+        EXPECT_EQ(ours[i].value, theirs[i].value);
+        EXPECT_EQ(ours[i].color, theirs[i].color);
+        EXPECT_EQ(ours[i].extinction, theirs[i].extinction);
+    }
 }
 
 TEST_F(VolumeCommand, WhatNeedsSurfacesSaysSo) {

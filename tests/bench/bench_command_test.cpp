@@ -62,16 +62,22 @@ TEST(BenchVoxelize, SaysThatGnuplotIsMissingAndStillWritesTheTable) {
     EXPECT_FALSE(std::filesystem::exists(folder.file("voxelize.png")));
 }
 
-/// Runs a chart of tiny size. @return its rows, which the CSV has too.
+/// Runs a chart of tiny size. @return its rows, which the CSV has too, under the names of `columns`.
 nlohmann::json rows_of(const std::string& chart, const std::string& size, const std::string& scene,
-                       const ScratchFolder& folder) {
+                       const ScratchFolder& folder, const std::string& columns = {}) {
     std::vector<std::string> words = {"bench", chart, "--resolutions",       size, "--runs",
                                       "1",     "-o",  folder.path().string()};
     if (!scene.empty()) words.insert(words.end(), {"--scene", scene});
     nlohmann::json rows = cairn_json(words)["measurements"];
-    const std::vector<std::string> lines = lines_of(read_text(folder.file(chart + ".csv")));
+    std::string file = chart + ".csv";
+    std::replace(file.begin(), file.end(), '-', '_');
+    const std::vector<std::string> lines = lines_of(read_text(folder.file(file)));
     EXPECT_EQ(lines.size(), rows.size() + 1) << chart;
-    EXPECT_TRUE(lines[0].ends_with(",driver,threads")) << lines[0];
+    if (columns.empty()) {
+        EXPECT_TRUE(lines[0].ends_with(",driver,threads")) << lines[0];
+    } else {
+        EXPECT_EQ(lines[0], columns);
+    }
     return rows;
 }
 
@@ -206,6 +212,101 @@ TEST(BenchVisibility, RaysProduceLessThanQueriesAndQueriesLessThanTheFrustum) {
     EXPECT_LT(by_rays, by_frustum);
 }
 
+TEST(BenchCheck, FindsASceneTheSameAtRestAndInMotion) {
+    const ScratchFolder folder;
+    const nlohmann::json rows =
+        rows_of("check", "16,33", "builtin:cornell", folder,
+                "scene,animation_seconds,resolution,triangles,occupied,missing,extra,outcome,seconds,driver");
+    ASSERT_EQ(rows.size(), 2U);
+    for (const nlohmann::json& row : rows) {
+        EXPECT_EQ(row["scene"], "builtin:cornell") << row;
+        EXPECT_FALSE(row.contains("animation_seconds")) << row;
+        EXPECT_EQ(row["outcome"], "same") << row;
+        EXPECT_EQ(row["missing"], 0) << row;
+        EXPECT_EQ(row["extra"], 0) << row;
+        EXPECT_GT(row["occupied"], 0) << row;
+        const nlohmann::json alone = cairn_json({"check", "builtin:cornell", "-r", row["resolution"].dump()});
+        EXPECT_EQ(row["occupied"], alone["occupied"]) << row;
+        EXPECT_EQ(row["triangles"], alone["triangles"]) << row;
+    }
+#ifdef CAIRN_SCENE_DATA
+    const nlohmann::json moving =
+        cairn_json({"bench", "check", "--scene", CAIRN_SCENE_DATA "/gltf/CesiumMan.glb", "--resolutions",
+                    "32", "-o", folder.path().string()})["measurements"];
+    ASSERT_EQ(moving.size(), 2U);
+    EXPECT_GT(moving[1]["animation_seconds"], 0.0);
+    EXPECT_EQ(moving[1]["outcome"], "same");
+#endif
+}
+
+TEST(BenchLevels, ErrorsFallWithThePixelError) {
+    const ScratchFolder folder;
+    const nlohmann::json rows =
+        rows_of("levels", "24", "builtin:cornell", folder,
+                "scene,size,distance,level_of_detail,pixel_error,rmse,bricks,kib_a_brick,mib,first_cpu_ms,"
+                "frame_cpu_ms,driver,threads");
+    ASSERT_EQ(rows.size(), 2U * 3U * 4U);
+    for (const nlohmann::json& row : rows) {
+        EXPECT_EQ(row["size"], "24x24") << row;
+        EXPECT_GT(row["rmse"], 0.0) << row;
+        EXPECT_LT(row["rmse"], 60.0) << row;
+        EXPECT_GT(row["bricks"], 0) << row;
+        EXPECT_GT(row["frame_cpu_ms"], 0.0) << row;
+    }
+    EXPECT_EQ(rows[0]["level_of_detail"], "nearest");
+    EXPECT_EQ(rows[4]["level_of_detail"], "nearest+mips");
+    EXPECT_EQ(rows[0]["rmse"], rows[4]["rmse"]) << "mips change nothing where they are not read";
+    EXPECT_LT(rows[0]["kib_a_brick"], rows[4]["kib_a_brick"]);
+    EXPECT_LT(rows[0]["rmse"], rows[3]["rmse"]) << "voxels of half a pixel, and of four";
+}
+
+#ifdef CAIRN_SCENE_DATA
+TEST(BenchMoving, VoxelizesEveryFrameExactly) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of("moving", "16", CAIRN_SCENE_DATA "/gltf/CesiumMan.glb", folder);
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_EQ(rows[0]["scene"], "CesiumMan.glb");
+    EXPECT_GT(rows[0]["frames"], 10);
+    EXPECT_GT(rows[0]["checked_frames"], 1);
+    EXPECT_EQ(rows[0]["missing"], 0);
+    EXPECT_EQ(rows[0]["extra"], 0);
+    for (const char* time : {"deform_ms", "voxelize_ms", "ours_ms", "embree_low_ms", "embree_medium_ms"})
+        EXPECT_GT(rows[0][time], 0.0) << time;
+}
+#endif
+
+TEST(BenchMoving, RefusesASceneThatDoesNotMove) {
+    const ScratchFolder folder;
+    const Answer answer =
+        cairn({"bench", "moving", "--scene", "builtin:cornell", "-o", folder.path().string(), "--quiet"});
+    EXPECT_EQ(answer.code, 2) << answer;
+    EXPECT_NE(answer.err.find("has no animation"), std::string::npos) << answer;
+}
+
+TEST(BenchRegions, OneRegionIsMarkedWithItsIndexAndWithout) {
+    const ScratchFolder folder;
+    const nlohmann::json rows = rows_of(
+        "region-deep", "64", "builtin:knot", folder,
+        "scene,triangles,inside,level,occupied,region_ms,region_cpu_ms,index_cpu_ms,without_index_ms,driver");
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_GT(rows[0]["triangles"], 50000);
+    EXPECT_NEAR(rows[0]["inside"].get<double>(), 2000.0, 500.0);
+    EXPECT_GT(rows[0]["occupied"], 0);
+    EXPECT_GT(rows[0]["region_ms"], 0.0);
+}
+
+TEST(BenchRegions, AGridIsTheSameInRegionsOfAnySize) {
+    const ScratchFolder folder;
+    const nlohmann::json rows =
+        rows_of("region-sizes", "256", "builtin:cornell", folder,
+                "scene,resolution,region_mib,regions,triangles,occupied,all_ms,marking_ms,cpu_ms,driver");
+    ASSERT_EQ(rows.size(), 7U);
+    for (const nlohmann::json& row : rows) {
+        EXPECT_EQ(row["occupied"], rows[0]["occupied"]) << row;
+        EXPECT_LE(row["regions"], rows[0]["regions"]) << row;
+    }
+}
+
 TEST(BenchUsage, HasHelpThatFitsATerminal) {
     const Answer answer = cairn({"bench", "--help"});
     EXPECT_EQ(answer.code, 0) << answer;
@@ -221,6 +322,39 @@ TEST(BenchUsage, NamesTheChartsThatThereAre) {
     EXPECT_NE(answer.err.find("choose one of: voxelize, embree, render"), std::string::npos) << answer;
     for (const char* sizes : {"0", "64.5", "100000", "x"})
         EXPECT_EQ(cairn({"bench", "voxelize", "--resolutions", sizes}).code, 2) << sizes;
+}
+
+TEST(BenchCommand, OptionsOfVoxelsChangeWhatAChartMeasures) {
+    const ScratchFolder folder;
+    const auto produced = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> words = {
+            "bench",  "production", "--scene", "builtin:cornell",     "--resolutions", "32",
+            "--runs", "1",          "-o",      folder.path().string()};
+        words.insert(words.end(), options.begin(), options.end());
+        return cairn_json(words);
+    };
+    const auto usual = produced({});
+    EXPECT_FALSE(usual.contains("voxel_options"));
+    const auto small = produced({"--brick-m", "8", "--traversal", "restart"});
+    EXPECT_EQ(small["voxel_options"]["brick-m"], "8");
+    EXPECT_EQ(small["voxel_options"]["traversal"], "restart");
+    EXPECT_GT(small["measurements"][0]["bricks_produced"], usual["measurements"][0]["bricks_produced"]);
+}
+
+TEST(BenchCommand, OptionsOfVoxelsThatAChartVariesItselfAreRefused) {
+    const std::vector<std::vector<std::string>> refused = {{"structure", "--tree-n", "2"},
+                                                           {"structure", "--traversal", "restart"},
+                                                           {"render", "--brick-m", "8"},
+                                                           {"resolution", "--tree-n", "2"},
+                                                           {"voxelize", "--traversal", "restart"},
+                                                           {"embree", "--frame-budget", "5"},
+                                                           {"moving-shadow", "--tile-queries", "blocks"}};
+    for (const std::vector<std::string>& words : refused) {
+        const Answer answer = cairn({"bench", words[0], words[1], words[2]});
+        EXPECT_EQ(answer.code, 2) << answer;
+        EXPECT_NE(answer.err.find(words[1]), std::string::npos) << answer;
+        EXPECT_NE(answer.err.find(words[0]), std::string::npos) << answer;
+    }
 }
 
 }  // namespace

@@ -232,11 +232,11 @@ TEST_F(ShadowChart, ManyRaysAreNoLessAccurateThanFew) {
     reference::AreaLightOptions sampling;
     sampling.exact_strata = 32;
     const std::vector<float> truth = soft_shares(tracer, question, receivers, sampling).shares;
-    const auto ours = shadowing_renderer(scene, tree_of(512), {});
-    view.pixel_error = always_finest;
+    ShadowFrames ours(renderer::ShadowMethod::voxel, scene, {.tree = tree_of(512)});
+    view.detail.pixel_error = always_finest;
     const auto rmse = [&](int rays) {
-        view.shadow_rays = rays;
-        return reference::shadow_error(shadow_frame(*ours, view).shares, truth).rmse();
+        view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
+        return reference::shadow_error(ours.run(view).shares, truth).rmse();
     };
     const double few = rmse(64);
     EXPECT_LT(rmse(512), 1.1 * few);
@@ -249,7 +249,7 @@ TEST_F(ShadowChart, MeshesOfSeveralBatchesAreWhole) {
     ASSERT_GT(scene.all().triangle_count, std::uint64_t(MESH_BATCH_TRIANGLES));
     const scenes::NodeSelection everything(scene.scene().nodes.size(), true);
     const reference::ImageTracer tracer(scene.scene(), scene.all());
-    const auto ours = shadowing_renderer(scene, tree_of(256), {});
+    ShadowFrames ours(renderer::ShadowMethod::voxel, scene, {.tree = tree_of(256)});
     std::map<int, std::vector<float>> before;
     for (const int width : {64, 68, 72, 76, 80, 64, 68, 72, 76, 80}) {
         const int height = width * 3 / 4;
@@ -257,7 +257,7 @@ TEST_F(ShadowChart, MeshesOfSeveralBatchesAreWhole) {
         const reference::ShadowQuestion question{scene.scene(), scene.all(), everything, view.camera,
                                                  view.light,    width,       height};
         const reference::ShadowReceivers receivers = shadow_receivers(tracer, question);
-        const std::vector<float> shares = shadow_frame(*ours, view).shares;
+        const std::vector<float> shares = ours.run(view).shares;
         int missing = 0;
         for (const std::size_t pixel : receivers.pixels)
             missing += shares[pixel] < 0.0F ? 1 : 0;

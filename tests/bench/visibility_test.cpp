@@ -11,7 +11,7 @@
 #include "bench/peers/box_tests.h"
 #include "bench/peers/occlusion_queries.h"
 #include "bench/peers/view_tiles.h"
-#include "bench/trials/frames.h"
+#include "bench/trials/frame_case.h"
 #include "renderer/march/march_view.h"
 #include "shaders/interop/march.h"
 #include "tests/support/gl_fixture.h"
@@ -26,35 +26,35 @@ constexpr std::size_t pool_bytes = std::size_t(32) << 20U;
 
 class VisibilityTest : public test::GlTest {
 protected:
-    static std::unique_ptr<VisibleBricks> bricks(const Subject& subject, const renderer::View& view) {
+    static std::unique_ptr<VisibleBricks> bricks(const FrameCase& frame_case, const renderer::View& view) {
         const renderer::TreeOptions options;
-        return std::make_unique<VisibleBricks>(subject.content(options, {}), renderer::tree_shape_of(options),
-                                               view, pool_bytes, gl::ShaderSource{});
+        return std::make_unique<VisibleBricks>(frame_case.content(options, {}),
+                                               renderer::tree_shape_of(options), view, pool_bytes,
+                                               gl::ShaderSource{});
     }
 };
 
 /// The eye in the middle, looking along an axis: what is near is all around it.
-renderer::View from_within(const Subject& subject) {
-    renderer::View view = subject.view(size, size);
-    view.camera.eye = 0.5 * (subject.bounds().low + subject.bounds().high);
+renderer::View from_within(const FrameCase& frame_case) {
+    renderer::View view = frame_case.view(size, size);
+    view.camera.eye = 0.5 * (frame_case.bounds().low + frame_case.bounds().high);
     view.camera.target = view.camera.eye + glm::dvec3(1.0, -0.1, -0.3);
     return view;
 }
 
-renderer::View nearer(const Subject& subject) {
-    renderer::View view = subject.view(size, size);
+renderer::View nearer(const FrameCase& frame_case) {
+    renderer::View view = frame_case.view(size, size);
     view.camera.eye = view.camera.target + 0.3 * (view.camera.eye - view.camera.target);
     return view;
 }
 
 /// Rays need no brick that the queries left out: the picture made of what they chose is that of the rays, bit
 /// for bit, without a tile being missed. And the counts are as far apart as what each knows.
-void expect_nothing_missed(const Subject& subject, renderer::View view,
+void expect_nothing_missed(const FrameCase& frame_case, renderer::View view,
                            const std::function<std::unique_ptr<VisibleBricks>(const renderer::View&)>& make) {
-    view.shadow = renderer::Shadow::none;
-    renderer::Renderer rays = subject.make({.brick_pool_bytes = pool_bytes}, {});
-    const optics::Image image = rays.render(view);
-    const renderer::FrameStatistics by_rays = rays.statistics();
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
+    renderer::Renderer rays = frame_case.make({}, {}, {.pools = {.brick_bytes = pool_bytes}});
+    const auto [image, by_rays] = rays.render(view);
     const Visibility by_frustum = make(view)->by_frustum();
     EXPECT_EQ(by_frustum.missed, 0U);
     EXPECT_EQ(by_frustum.image.rgba, image.rgba);
@@ -78,28 +78,28 @@ void expect_nothing_missed(const Subject& subject, renderer::View view,
 
 TEST_F(VisibilityTest, NoRayNeedsWhatTheQueriesLeftOut) {
     for (const char* scene : {"builtin:cornell", "builtin:knot"}) {
-        const Subject subject(scene);
-        auto make = [&](const renderer::View& view) { return bricks(subject, view); };
+        const FrameCase frame_case(scene);
+        auto make = [&](const renderer::View& view) { return bricks(frame_case, view); };
         for (const auto& [name, view] :
-             {std::pair("near", nearer(subject)), std::pair("within", from_within(subject))}) {
+             {std::pair("near", nearer(frame_case)), std::pair("within", from_within(frame_case))}) {
             SCOPED_TRACE(std::string(scene) + ", " + name);
-            expect_nothing_missed(subject, view, make);
+            expect_nothing_missed(frame_case, view, make);
         }
     }
 }
 
 TEST_F(VisibilityTest, WhatAWallHidesIsNotProduced) {
     // Straight at the back of the Cornell box: its wall is all there is to see.
-    const Subject subject("builtin:cornell");
-    const glm::dvec3 middle = 0.5 * (subject.bounds().low + subject.bounds().high);
-    const glm::dvec3 extent = subject.bounds().high - subject.bounds().low;
-    renderer::View view = subject.view(size, size);
+    const FrameCase frame_case("builtin:cornell");
+    const glm::dvec3 middle = 0.5 * (frame_case.bounds().low + frame_case.bounds().high);
+    const glm::dvec3 extent = frame_case.bounds().high - frame_case.bounds().low;
+    renderer::View view = frame_case.view(size, size);
     view.camera.target = middle;
     view.camera.eye = middle - glm::dvec3(0.0, 0.0, 0.9 * extent.z);
     view.camera.yfov = 0.8;
     const QuerySchedule waiting{.tests = 8, .overlapped = false};
-    const Visibility by_queries = bricks(subject, view)->by_queries(waiting);
-    const Visibility by_frustum = bricks(subject, view)->by_frustum();
+    const Visibility by_queries = bricks(frame_case, view)->by_queries(waiting);
+    const Visibility by_frustum = bricks(frame_case, view)->by_frustum();
     EXPECT_EQ(by_queries.missed, 0U);
     EXPECT_LT(2 * by_queries.bricks_produced, by_frustum.bricks_produced);
 }
@@ -132,17 +132,17 @@ TEST_F(VisibilityTest, ABoxIsVisibleWhereARayThroughAPixelReachesIt) {
     constexpr std::uint32_t seed = 1807;
     std::mt19937 random(seed);
     auto unit = [&] { return double(random() >> 8U) * 0x1p-24; };
-    const Subject subject("builtin:cornell");
+    const FrameCase frame_case("builtin:cornell");
     const renderer::TreeOptions options;
     const renderer::TreeShape shape = renderer::tree_shape_of(options);
-    const auto content = subject.content(options, {});
-    renderer::View seen = from_within(subject);
-    seen.width = 61;
-    seen.height = 47;
+    const auto content = frame_case.content(options, {});
+    renderer::View seen = from_within(frame_case);
+    seen.size.width = 61;
+    seen.size.height = 47;
     const interop::MarchView view = renderer::march_view(seen, content->grid(), shape, nullptr);
     const glm::dvec3 eye(view.eye);
     BoxTests tests(view, {});
-    std::vector<float> inverse_depths(std::size_t(seen.width) * std::size_t(seen.height));
+    std::vector<float> inverse_depths(std::size_t(seen.size.width) * std::size_t(seen.size.height));
     int visible_count = 0, hidden_count = 0, in_doubt = 0;
     for (int round = 0; round < 12; ++round) {
         const double typical = 300.0 * std::exp2(4.5 * unit());
@@ -166,7 +166,7 @@ TEST_F(VisibilityTest, ABoxIsVisibleWhereARayThroughAPixelReachesIt) {
             const Box& box = boxes[i];
             const glm::dvec3 far = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
             // A pixel is about 1/32 of the distance wide here, and the tests add a 64th of one.
-            const double pixel = 2.0 * glm::length(glm::dvec3(view.up)) / seen.height;
+            const double pixel = 2.0 * glm::length(glm::dvec3(view.up)) / seen.size.height;
             const double slack = glm::length(far) * pixel / 16.0;
             const bool must = reaches(view, box, inverse_depths, 1e-5);
             const bool may = reaches(view, {box.low - slack, box.high + slack}, inverse_depths, -1e-5);
@@ -185,10 +185,10 @@ TEST_F(VisibilityTest, ABoxIsVisibleWhereARayThroughAPixelReachesIt) {
 }
 
 TEST_F(VisibilityTest, BoxesAroundTheEyeAreVisibleWithoutATest) {
-    const Subject subject("builtin:cornell");
+    const FrameCase frame_case("builtin:cornell");
     const renderer::TreeOptions options;
-    const auto content = subject.content(options, {});
-    const interop::MarchView view = renderer::march_view(from_within(subject), content->grid(),
+    const auto content = frame_case.content(options, {});
+    const interop::MarchView view = renderer::march_view(from_within(frame_case), content->grid(),
                                                          renderer::tree_shape_of(options), nullptr);
     BoxTests tests(view, {});
     tests.set_depths(std::vector<float>(std::size_t(size) * size, 1.0F / 16.0F));
@@ -199,11 +199,12 @@ TEST_F(VisibilityTest, BoxesAroundTheEyeAreVisibleWithoutATest) {
 }
 
 TEST_F(VisibilityTest, TheNearestTileIsTheFirstOfTheList) {
-    const Subject subject("builtin:knot");
+    const FrameCase frame_case("builtin:knot");
     const renderer::TreeOptions options;
     const renderer::TreeShape shape = renderer::tree_shape_of(options);
-    const auto content = subject.content(options, {});
-    for (const renderer::View& view : {subject.view(size, size), nearer(subject), from_within(subject)}) {
+    const auto content = frame_case.content(options, {});
+    for (const renderer::View& view :
+         {frame_case.view(size, size), nearer(frame_case), from_within(frame_case)}) {
         const ViewTest test(renderer::march_view(view, content->grid(), shape, nullptr), shape);
         renderer::Tree tree(shape, 1, std::size_t(8) << 20U, content->oracle().child_mask(renderer::Tile{}));
         const std::vector<ViewTile> tiles = list_tiles(tree, content->oracle(), test);
@@ -216,9 +217,9 @@ TEST_F(VisibilityTest, TheNearestTileIsTheFirstOfTheList) {
 }
 
 TEST_F(VisibilityTest, SaysWhatItCannotDecide) {
-    const Subject volume("builtin:hollow-sphere");
+    const FrameCase volume("builtin:hollow-sphere");
     EXPECT_THROW((void)bricks(volume, volume.view(size, size)), Error);
-    const Subject scene("builtin:cornell");
+    const FrameCase scene("builtin:cornell");
     renderer::View far = scene.view(size, size);
     far.camera.eye = far.camera.target + 100.0 * (far.camera.eye - far.camera.target);
     EXPECT_THROW((void)bricks(scene, far), Error);

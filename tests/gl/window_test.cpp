@@ -2,6 +2,7 @@
 
 #include "gl/window.h"
 
+#include <glad/gl.h>
 #include <gtest/gtest.h>
 
 #include "gl/handle.h"

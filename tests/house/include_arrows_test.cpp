@@ -27,6 +27,13 @@ struct Folder {
     bool with_subfolders = true;
 };
 
+/// Rooms of the command and of the benchmarks, which may include every library.
+std::vector<std::string_view> and_all_libraries(std::vector<std::string_view> rooms) {
+    rooms.insert(rooms.end(), {"renderer/", "reference/", "voxelizer/", "optics/", "scenes/", "gl/",
+                               "shaders/interop/", "base/"});
+    return rooms;
+}
+
 const std::vector<Folder> folders = {
     {"shaders/interop/", {"shaders/interop/"}},
     {"shaders/", {"shaders/"}},
@@ -34,7 +41,8 @@ const std::vector<Folder> folders = {
     {"gl/", {"gl/", "shaders/", "base/"}},
     {"scenes/", {"scenes/", "base/"}},
     {"optics/", {"optics/", "scenes/", "base/"}},
-    {"voxelizer/", {"voxelizer/", "gl/", "scenes/", "shaders/interop/", "base/"}},
+    // Of optics/ only the curve of sRGB, which files of voxels are written with.
+    {"voxelizer/", {"voxelizer/", "optics/srgb.h", "gl/", "scenes/", "shaders/interop/", "base/"}},
     // Of the voxelizer only plain types and what defines an exact answer: none of what the
     // reference is to judge.
     {"reference/",
@@ -54,19 +62,27 @@ const std::vector<Folder> folders = {
      {"renderer/frame/", "renderer/march/", "renderer/view/", "renderer/mesh/", "renderer/produce/",
       "renderer/pool/", "optics/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/shadow/",
-     {"renderer/shadow/", "renderer/march/", "renderer/view/", "renderer/produce/", "renderer/pool/",
-      "optics/", "scenes/", "gl/", "shaders/interop/", "base/"}},
+     {"renderer/shadow/", "renderer/march/", "renderer/view/", "renderer/mesh/", "renderer/produce/",
+      "renderer/pool/", "voxelizer/", "optics/", "scenes/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/",
      {"renderer/", "voxelizer/", "optics/", "scenes/", "gl/", "shaders/interop/", "base/"},
      false},
-    {"app/",
-     {"app/", "renderer/", "reference/", "voxelizer/", "optics/", "scenes/", "gl/", "shaders/interop/",
-      "base/", "bench/charts/chart.h"}},
+    {"app/options/", and_all_libraries({"app/options/"})},
+    {"app/terminal/", and_all_libraries({"app/terminal/", "app/options/"})},
+    {"app/subject/", and_all_libraries({"app/subject/", "app/terminal/", "app/options/"})},
+    {"app/viewer/", and_all_libraries({"app/viewer/", "app/options/"})},
+    {"app/verbs/", and_all_libraries({"app/verbs/", "app/viewer/", "app/subject/", "app/terminal/",
+                                      "app/options/", "bench/charts/chart.h"})},
+    {"app/", and_all_libraries({"app/"}), false},
+    {"bench/peers/", and_all_libraries({"bench/peers/"})},
+    {"bench/plots/", and_all_libraries({"bench/plots/"})},
+    {"bench/trials/", and_all_libraries({"bench/trials/", "bench/peers/", "bench/plots/table.h"})},
+    {"bench/charts/", and_all_libraries({"bench/charts/", "bench/trials/", "bench/peers/", "bench/plots/"})},
     {"tests/", {""}},
-    {"bench/", {""}},
+    {"fuzz/", {""}},
 };
 
-/// A library of others that only some places may see (and tests/ and bench/): the rest does not depend on it.
+/// A library of others that only some places may see, and tests/: the rest does not depend on it.
 struct External {
     std::string_view name;
     std::vector<std::string_view> seen_by;
@@ -82,6 +98,8 @@ const std::vector<External> externals = {
     {"CLI/", {"app/"}},
     {"EGL/", {"gl/"}},
     {"GL/osmesa", {"gl/"}},
+    {"glad/", {"gl/", "voxelizer/", "renderer/", "app/"}},
+    {"cairn/", {}},
 };
 
 bool begins_with_any(std::string_view path, const std::vector<std::string_view>& beginnings) {
@@ -124,7 +142,7 @@ std::string fault_of(const fs::path& root, const std::string& file, bool quoted,
 std::vector<std::string> violations(const fs::path& root, int* include_count = nullptr) {
     static const std::regex include_line(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
     constexpr std::array top_folders = {"shaders",   "base",     "gl",  "scenes", "optics", "voxelizer",
-                                        "reference", "renderer", "app", "tests",  "bench"};
+                                        "reference", "renderer", "app", "tests",  "bench",  "fuzz"};
     std::vector<std::string> found;
     for (const char* top : top_folders) {
         if (!fs::exists(root / top)) continue;
@@ -204,6 +222,27 @@ TEST_F(FakeTree, WithArrowsAgainstTheWayNamesFileAndLine) {
         "shaders/interop/surface.h:1: shaders/interop/ may not include \"march/march.glsl\"",
         "voxelizer/grid.cpp:1: \"grid.h\" does not exist, seen from the project's root",
         "voxelizer/grid.cpp:2: voxelizer/ may not include \"reference/exact.h\"",
+    };
+    EXPECT_EQ(found(), expected);
+}
+
+TEST_F(FakeTree, WithRoomsThatLookUpNamesThem) {
+    for (const char* header : {"app/options/options.h", "app/verbs/verbs.h", "bench/charts/chart.h",
+                               "bench/plots/table.h", "bench/trials/chart.h"})
+        add(header, "#pragma once\n");
+    add("app/main.cpp", "#include \"app/verbs/verbs.h\"\n");
+    add("app/options/options.cpp", "#include \"app/verbs/verbs.h\"\n#include \"renderer/renderer.h\"\n");
+    add("app/verbs/verb_bench.cpp", "#include \"bench/charts/chart.h\"\n#include \"bench/trials/chart.h\"\n");
+    add("bench/charts/chart.cpp", "#include \"bench/plots/table.h\"\n#include \"bench/trials/chart.h\"\n");
+    add("bench/plots/table.cpp", "#include \"bench/charts/chart.h\"\n");
+    add("bench/stray.cpp", "#include \"bench/plots/table.h\"\n");
+    add("bench/trials/chart.cpp", "#include \"bench/charts/chart.h\"\n");
+    const std::vector<std::string> expected = {
+        "app/options/options.cpp:1: app/options/ may not include \"app/verbs/verbs.h\"",
+        "app/verbs/verb_bench.cpp:2: app/verbs/ may not include \"bench/trials/chart.h\"",
+        "bench/plots/table.cpp:1: bench/plots/ may not include \"bench/charts/chart.h\"",
+        "bench/stray.cpp:1: the table names no such folder",
+        "bench/trials/chart.cpp:1: bench/trials/ may not include \"bench/charts/chart.h\"",
     };
     EXPECT_EQ(found(), expected);
 }

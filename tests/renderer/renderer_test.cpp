@@ -12,13 +12,13 @@
 #include "tests/support/gl_fixture.h"
 #include "tests/support/march_twin.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
 using renderer::Renderer;
-using renderer::TreeOptions;
 using renderer::View;
 
 struct Difference {
@@ -48,17 +48,17 @@ Difference compare(const optics::Image& a, const optics::Image& b, int threshold
     return difference;
 }
 
-Renderer make_renderer(const scenes::Scene& scene, const TreeOptions& options) {
-    return Renderer(scene, scenes::take_snapshot(scene), options);
+Renderer make_renderer(const scenes::Scene& scene, const Settings& options) {
+    return voxel_renderer(scene, scenes::take_snapshot(scene), options);
 }
 
 /// Every voxel at the finest level, whatever the distance.
 View finest_view(const scenes::Scene& scene, int width = 160, int height = 120) {
     View view;
-    view.width = width;
-    view.height = height;
+    view.size.width = width;
+    view.size.height = height;
     view.camera = optics::framing_camera(scenes::take_snapshot(scene).bounds, double(width) / height);
-    view.pixel_error = 1e-6;
+    view.detail.pixel_error = 1e-6;
     return view;
 }
 
@@ -70,13 +70,13 @@ TEST_P(TreeShapes, PictureEqualsThePlainCpuMarchOfTheSameBits) {
     const scenes::Scene scene = ball_over_floor();
     const DenseVoxels voxels = dense_voxels(scene, 64);
     Renderer renderer =
-        make_renderer(scene, {.n = GetParam().first, .m = GetParam().second, .max_resolution = 64});
+        make_renderer(scene, {.tree = {.n = GetParam().first, .m = GetParam().second, .max_resolution = 64}});
     View view = finest_view(scene);
     for (const glm::dvec3 direction :
          {glm::dvec3(0.55, 0.45, 1.0), glm::dvec3(-1.0, 0.2, 0.1), glm::dvec3(0.1, 1.0, -0.3)}) {
         const double distance = glm::length(view.camera.eye - view.camera.target);
         view.camera.eye = view.camera.target + glm::normalize(direction) * distance;
-        const optics::Image ours = renderer.render(view);
+        const optics::Image ours = renderer.render(view).image;
         const optics::Image twin = march_dense(voxels, view);
         // Float against double: a chord's end moves by 1e-5 voxels, which shows where a threshold is crossed
         // (the voxel that weighs most, the first empty cell of a shadow ray), on few pixels.
@@ -88,10 +88,12 @@ TEST_P(TreeShapes, PictureEqualsThePlainCpuMarchOfTheSameBits) {
 TEST_P(TreeShapes, PictureFromManyBricksEqualsTheOneFromADenseGrid) {
     const scenes::Scene scene = ball_over_floor();
     const View view = finest_view(scene);
-    const optics::Image dense = make_renderer(scene, {.m = 64, .max_resolution = 64}).render(view);
+    const optics::Image dense =
+        make_renderer(scene, {.tree = {.m = 64, .max_resolution = 64}}).render(view).image;
     const optics::Image bricks =
-        make_renderer(scene, {.n = GetParam().first, .m = GetParam().second, .max_resolution = 64})
-            .render(view);
+        make_renderer(scene, {.tree = {.n = GetParam().first, .m = GetParam().second, .max_resolution = 64}})
+            .render(view)
+            .image;
     const Difference difference = compare(dense, bricks, 1);
     EXPECT_EQ(difference.pixels_over, 0U) << difference.first;
 }
@@ -99,21 +101,21 @@ TEST_P(TreeShapes, PictureFromManyBricksEqualsTheOneFromADenseGrid) {
 TEST_P(TreeShapes, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const scenes::Scene scene = ball_over_floor();
     const View view = finest_view(scene);
-    TreeOptions options{.n = GetParam().first, .m = GetParam().second, .max_resolution = 128};
+    Settings options{.tree = {.n = GetParam().first, .m = GetParam().second, .max_resolution = 128}};
     Renderer roomy = make_renderer(scene, options);
-    const optics::Image expected = roomy.render(view);
-    const std::uint64_t needed = roomy.statistics().bricks_resident;
+    const renderer::Frame expected = roomy.render(view);
+    const std::uint64_t needed = expected.statistics.bricks_resident;
 
-    const std::size_t side = std::size_t(options.m) + 2;
-    options.brick_pool_bytes = 4 * side * side * side * 6;  // about four bricks
-    options.node_pool_bytes = 9 * 64 * 16;
+    const std::size_t side = std::size_t(options.tree.m) + 2;
+    options.pools.brick_bytes = 4 * side * side * side * 6;  // about four bricks
+    options.pools.node_bytes = 9 * 64 * 16;
     Renderer tight = make_renderer(scene, options);
-    const optics::Image ours = tight.render(view);
-    EXPECT_EQ(ours.rgba, expected.rgba);
-    EXPECT_LE(tight.statistics().bricks_resident * 4, needed) << "the pool was not far smaller than the view";
-    EXPECT_GT(tight.statistics().bricks_evicted, 0U);
-    EXPECT_LE(tight.statistics().brick_pool_bytes, options.brick_pool_bytes);
-    EXPECT_LE(tight.statistics().node_pool_bytes, options.node_pool_bytes);
+    const renderer::Frame ours = tight.render(view);
+    EXPECT_EQ(ours.image.rgba, expected.image.rgba);
+    EXPECT_LE(ours.statistics.bricks_resident * 4, needed) << "the pool was not far smaller than the view";
+    EXPECT_GT(ours.statistics.bricks_evicted, 0U);
+    EXPECT_LE(ours.statistics.brick_pool_bytes, options.pools.brick_bytes);
+    EXPECT_LE(ours.statistics.node_pool_bytes, options.pools.node_bytes);
 }
 
 INSTANTIATE_TEST_SUITE_P(NAndM, TreeShapes,
@@ -127,34 +129,34 @@ TEST_F(RendererTest, ConvergedFrameProducesNothingAndRepeatsThePicture) {
     const scenes::Scene scene = scenes::make_builtin("knot");
     Renderer renderer = make_renderer(scene, {});
     View view = finest_view(scene);
-    view.pixel_error = 1.0;
-    const optics::Image first = renderer.render(view);
-    EXPECT_GT(renderer.statistics().bricks_produced, 0U);
+    view.detail.pixel_error = 1.0;
+    const renderer::Frame first = renderer.render(view);
+    EXPECT_GT(first.statistics.bricks_produced, 0U);
     renderer.forget_picture();
-    const optics::Image second = renderer.render(view);
-    EXPECT_EQ(second.rgba, first.rgba);
-    EXPECT_EQ(renderer.statistics().bricks_produced, 0U);
-    EXPECT_EQ(renderer.statistics().nodes_subdivided, 0U);
-    EXPECT_EQ(renderer.statistics().tile_queries, 0U);
-    EXPECT_EQ(renderer.statistics().passes, 2) << "one for primary rays, one for shadow rays";
+    const renderer::Frame second = renderer.render(view);
+    EXPECT_EQ(second.image.rgba, first.image.rgba);
+    EXPECT_EQ(second.statistics.bricks_produced, 0U);
+    EXPECT_EQ(second.statistics.nodes_subdivided, 0U);
+    EXPECT_EQ(second.statistics.tile_queries, 0U);
+    EXPECT_EQ(second.statistics.passes, 2) << "one for primary rays, one for shadow rays";
 }
 
 TEST_F(RendererTest, PictureDoesNotDependOnTheFramesBeforeIt) {
     const scenes::Scene scene = scenes::make_builtin("spheres");
     // A pool that the second view fills anew.
-    const TreeOptions options{.max_resolution = 1024, .brick_pool_bytes = 1U << 20U};
+    const Settings options{.tree = {.max_resolution = 1024}, .pools = {.brick_bytes = 1U << 20U}};
     View near_view = finest_view(scene);
-    near_view.pixel_error = 1.0;
+    near_view.detail.pixel_error = 1.0;
     View other = near_view;
     other.camera.eye = other.camera.target - 0.7 * (other.camera.eye - other.camera.target);
     Renderer used = make_renderer(scene, options);
     (void)used.render(near_view);
-    const optics::Image after = used.render(other);
-    EXPECT_GT(used.statistics().bricks_evicted, 0U);
-    const optics::Image fresh = make_renderer(scene, options).render(other);
-    const Difference difference = compare(after, fresh, 0);
+    const renderer::Frame after = used.render(other);
+    EXPECT_GT(after.statistics.bricks_evicted, 0U);
+    const optics::Image fresh = make_renderer(scene, options).render(other).image;
+    const Difference difference = compare(after.image, fresh, 0);
     EXPECT_EQ(difference.pixels_over, 0U) << difference.first << "; largest " << difference.largest;
-    const optics::Image roomy = make_renderer(scene, {.max_resolution = 1024}).render(other);
+    const optics::Image roomy = make_renderer(scene, {.tree = {.max_resolution = 1024}}).render(other).image;
     const Difference with_room = compare(roomy, fresh, 0);
     EXPECT_EQ(with_room.pixels_over, 0U) << with_room.first << "; largest " << with_room.largest;
 }
@@ -162,14 +164,14 @@ TEST_F(RendererTest, PictureDoesNotDependOnTheFramesBeforeIt) {
 TEST_F(RendererTest, FarViewNeedsFewerBricksThanANearOne) {
     const scenes::Scene scene = scenes::make_builtin("knot");
     View view = finest_view(scene);
-    view.pixel_error = 1.0;
+    view.detail.pixel_error = 1.0;
     Renderer near_renderer = make_renderer(scene, {});
-    (void)near_renderer.render(view);
+    const renderer::Frame near_frame = near_renderer.render(view);
     View far_view = view;
     far_view.camera.eye = view.camera.target + 16.0 * (view.camera.eye - view.camera.target);
     Renderer far_renderer = make_renderer(scene, {});
-    (void)far_renderer.render(far_view);
-    EXPECT_LT(far_renderer.statistics().bricks_produced * 20, near_renderer.statistics().bricks_produced);
+    const renderer::Frame far_frame = far_renderer.render(far_view);
+    EXPECT_LT(far_frame.statistics.bricks_produced * 20, near_frame.statistics.bricks_produced);
 }
 
 TEST_F(RendererTest, EmptySceneIsBackgroundAndProducesNothing) {
@@ -177,15 +179,15 @@ TEST_F(RendererTest, EmptySceneIsBackgroundAndProducesNothing) {
     scene.scenes.emplace_back();
     Renderer renderer = make_renderer(scene, {});
     View view;
-    view.width = 33;
-    view.height = 17;
-    const optics::Image image = renderer.render(view);
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-        ASSERT_EQ(image.rgba[i + 3], 0) << "pixel " << i / 4;
-        ASSERT_EQ(image.rgba[i], image.rgba[0]) << "pixel " << i / 4;
+    view.size.width = 33;
+    view.size.height = 17;
+    const renderer::Frame image = renderer.render(view);
+    for (std::size_t i = 0; i < image.image.rgba.size(); i += 4) {
+        ASSERT_EQ(image.image.rgba[i + 3], 0) << "pixel " << i / 4;
+        ASSERT_EQ(image.image.rgba[i], image.image.rgba[0]) << "pixel " << i / 4;
     }
-    EXPECT_EQ(renderer.statistics().bricks_produced, 0U);
-    EXPECT_EQ(renderer.statistics().passes, 0) << "nothing can be seen: no ray is needed to know that";
+    EXPECT_EQ(image.statistics.bricks_produced, 0U);
+    EXPECT_EQ(image.statistics.passes, 0) << "nothing can be seen: no ray is needed to know that";
 }
 
 TEST_F(RendererTest, ShadowOfASquareLiesWhereGeometryPutsIt) {
@@ -193,22 +195,22 @@ TEST_F(RendererTest, ShadowOfASquareLiesWhereGeometryPutsIt) {
     // dark exactly under it.
     const scenes::Scene scene = square_over_floor();
     View view;
-    view.width = view.height = 300;
+    view.size.width = view.size.height = 300;
     view.camera.eye = {0.0, 0.9, 3.2};
     view.camera.target = {0.0, 0.0, 0.0};
     view.light.towards = {0.0, 1.0, 0.0};
     view.light.ambient = 0.0F;
-    const optics::Image image = make_renderer(scene, {}).render(view);
+    const optics::Image image = make_renderer(scene, {}).render(view).image;
     const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
     const double half = std::tan(0.5 * view.camera.yfov);
     int dark = 0;
     int lit = 0;
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
-            const double px = (x + 0.5) / view.width * 2.0 - 1.0;
-            const double py = 1.0 - (y + 0.5) / view.height * 2.0;
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
+            const double px = (x + 0.5) / view.size.width * 2.0 - 1.0;
+            const double py = 1.0 - (y + 0.5) / view.size.height * 2.0;
             const glm::dvec3 ray = forward + half * (px * right + py * up);
             if (ray.y >= 0.0) continue;
             const glm::dvec3 floor_point = view.camera.eye - ray * (view.camera.eye.y / ray.y);
@@ -216,7 +218,7 @@ TEST_F(RendererTest, ShadowOfASquareLiesWhereGeometryPutsIt) {
             if (!on_floor) continue;
             const double edge = std::max(std::abs(floor_point.x), std::abs(floor_point.z)) - 0.5;
             if (std::abs(edge) < 0.05) continue;  // a few pixels around the shadow's edge
-            const int red = image.rgba[std::size_t(y * view.width + x) * 4];
+            const int red = image.rgba[std::size_t(y * view.size.width + x) * 4];
             if (edge < 0.0) {
                 ++dark;
                 ASSERT_LE(red, 8) << "light leaks at pixel (" << x << ", " << y << ")";
@@ -235,13 +237,13 @@ TEST_F(RendererTest, FlatColoursComeThroughUnchanged) {
     const glm::vec4 linear(0.5F, 0.1F, 0.02F, 1.0F);
     const scenes::Scene scene = sheet(linear);
     View view;
-    view.width = view.height = 40;
+    view.size.width = view.size.height = 40;
     view.camera.eye = {0.0, 3.0, 0.0};
     view.camera.up = {0.0, 0.0, -1.0};
     view.camera.target = {0.0, 0.0, 0.0};
     view.camera.yfov = 0.3;
     view.light.ambient = 1.0F;
-    const optics::Image image = make_renderer(scene, {}).render(view);
+    const optics::Image image = make_renderer(scene, {}).render(view).image;
     for (int channel = 0; channel < 3; ++channel) {
         const double c = linear[channel];
         const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
@@ -265,10 +267,10 @@ TEST_F(RendererTest, AlphaMaskCutsThePictureWhereTheTextureSaysSo) {
     for (const glm::vec3& p : square.positions)
         square.texcoords.emplace_back(0.5F + 0.5F * p.x, 0.5F);
     View view;
-    view.width = view.height = 64;
+    view.size.width = view.size.height = 64;
     view.camera.eye = {0.0, 3.0, 0.0};
     view.camera.up = {0.0, 0.0, -1.0};
-    const optics::Image picture = make_renderer(scene, {}).render(view);
+    const optics::Image picture = make_renderer(scene, {}).render(view).image;
     const double half = 64.0 / (2.0 * std::tan(0.5 * view.camera.yfov) * 3.0);  // pixels across a unit
     for (int x = 0; x < 64; ++x) {
         const double place = (x + 0.5 - 32.0) / half;
@@ -283,29 +285,29 @@ TEST_F(RendererTest, LongRaysPauseAndStillEndWithTheSamePicture) {
     // Rays just above a sheet cross thousands of tiles that are not empty: more than one pass may walk.
     const scenes::Scene scene = sheet(glm::vec4(1.0F));
     View view;
-    view.width = view.height = 2;
+    view.size.width = view.size.height = 2;
     view.camera.eye = {-1.2, 1e-4, 0.0};
     view.camera.target = {1.2, 1e-4, 0.0};
     view.camera.yfov = 1e-7;
-    view.shadow = renderer::Shadow::none;
-    Renderer renderer = make_renderer(scene, {.max_resolution = 65536});
-    const optics::Image first = renderer.render(view);
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
+    Renderer renderer = make_renderer(scene, {.tree = {.max_resolution = 65536}});
+    const optics::Image first = renderer.render(view).image;
     renderer.forget_picture();
-    const optics::Image second = renderer.render(view);
-    EXPECT_EQ(renderer.statistics().bricks_produced, 0U);
-    EXPECT_GT(renderer.statistics().passes, 1) << "no ray was long enough to pause";
-    EXPECT_EQ(first.rgba, second.rgba);
+    const renderer::Frame second = renderer.render(view);
+    EXPECT_EQ(second.statistics.bricks_produced, 0U);
+    EXPECT_GT(second.statistics.passes, 1) << "no ray was long enough to pause";
+    EXPECT_EQ(first.rgba, second.image.rgba);
 }
 
 TEST_F(RendererTest, PictureLargerThanTheDriversBufferIsMarchedInBands) {
     const scenes::Scene scene = ball_over_floor();
-    Renderer renderer = make_renderer(scene, {.max_resolution = 64});
+    Renderer renderer = make_renderer(scene, {.tree = {.max_resolution = 64}});
     const View small = finest_view(scene, 800, 1000);
     View large = small;
-    large.width *= 2;
-    large.height *= 2;  // 3.2 million ray states of 48 bytes: more than 128 MiB
-    const optics::Image coarse = renderer.render(small);
-    const optics::Image fine = renderer.render(large);
+    large.size.width *= 2;
+    large.size.height *= 2;  // 3.2 million ray states of 48 bytes: more than 128 MiB
+    const optics::Image coarse = renderer.render(small).image;
+    const optics::Image fine = renderer.render(large).image;
     ASSERT_EQ(fine.rgba.size(), 16U * 800U * 1000U);
     // The same voxels in both: away from their edges the larger picture repeats the smaller one's pixels.
     std::size_t far_off = 0;
@@ -323,12 +325,12 @@ TEST_F(RendererTest, FarCameraWithANarrowLensSeesWhatANearerOneSees) {
     const scenes::Scene scene = ball_over_floor();
     Renderer renderer = make_renderer(scene, {});
     View view;
-    view.width = view.height = 100;
+    view.size.width = view.size.height = 100;
     auto from = [&](double distance) {
         view.camera.target = {0.0, 1.0, 0.0};
         view.camera.eye = view.camera.target + glm::normalize(glm::dvec3(0.3, 0.4, 1.0)) * distance;
         view.camera.yfov = 2.0 * std::atan(3.0 / distance);
-        return renderer.render(view);
+        return renderer.render(view).image;
     };
     const Difference difference = compare(from(1e3), from(1e6), 24);
     EXPECT_LE(difference.pixels_over, 150U)
@@ -338,9 +340,11 @@ TEST_F(RendererTest, FarCameraWithANarrowLensSeesWhatANearerOneSees) {
 TEST_F(RendererTest, LargeBricksHoldLargeTrianglesWhole) {
     const scenes::Scene scene = scenes::make_builtin("cornell");
     View view = finest_view(scene, 128, 128);
-    view.shadow = renderer::Shadow::none;
-    const optics::Image small = make_renderer(scene, {.m = 16, .max_resolution = 256}).render(view);
-    const optics::Image large = make_renderer(scene, {.m = 64, .max_resolution = 256}).render(view);
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
+    const optics::Image small =
+        make_renderer(scene, {.tree = {.m = 16, .max_resolution = 256}}).render(view).image;
+    const optics::Image large =
+        make_renderer(scene, {.tree = {.m = 64, .max_resolution = 256}}).render(view).image;
     const Difference difference = compare(small, large, 1);
     EXPECT_EQ(difference.pixels_over, 0U) << difference.first;
 }
@@ -349,7 +353,7 @@ TEST_F(RendererTest, CamerasInsideOnFacesAndAlongAxesComeToAnEnd) {
     const scenes::Scene scene = ball_over_floor();
     const scenes::Bounds bounds = scenes::take_snapshot(scene).bounds;
     const glm::dvec3 centre = 0.5 * (bounds.low + bounds.high);
-    Renderer renderer = make_renderer(scene, {.max_resolution = 256});
+    Renderer renderer = make_renderer(scene, {.tree = {.max_resolution = 256}});
     std::vector<glm::dvec3> eyes = {centre,
                                     bounds.low,
                                     bounds.high,
@@ -365,8 +369,8 @@ TEST_F(RendererTest, CamerasInsideOnFacesAndAlongAxesComeToAnEnd) {
         for (const glm::dvec3 towards :
              {glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1), glm::dvec3(-1, -1, -1)}) {
             View view;
-            view.width = 31;  // odd: the middle pixel looks exactly along the axis
-            view.height = 21;
+            view.size.width = 31;  // odd: the middle pixel looks exactly along the axis
+            view.size.height = 21;
             view.camera.eye = eye;
             view.camera.target = eye + towards;
             view.camera.up =
@@ -380,18 +384,18 @@ TEST_F(RendererTest, CamerasInsideOnFacesAndAlongAxesComeToAnEnd) {
 
 TEST_F(RendererTest, ImpossibleTreesPoolsAndViewsAreRefusedWithAWayOut) {
     const scenes::Scene scene = ball_over_floor();
-    EXPECT_THROW(make_renderer(scene, {.n = 3}), Error);
-    EXPECT_THROW(make_renderer(scene, {.m = 12}), Error);
-    EXPECT_THROW(make_renderer(scene, {.max_resolution = 4}), Error);
-    EXPECT_THROW(make_renderer(scene, {.node_pool_bytes = 100}), Error);
+    EXPECT_THROW(make_renderer(scene, {.tree = {.n = 3}}), Error);
+    EXPECT_THROW(make_renderer(scene, {.tree = {.m = 12}}), Error);
+    EXPECT_THROW(make_renderer(scene, {.tree = {.max_resolution = 4}}), Error);
+    EXPECT_THROW(make_renderer(scene, {.pools = {.node_bytes = 100}}), Error);
     try {
-        (void)make_renderer(scene, {.brick_pool_bytes = 1000});
+        (void)make_renderer(scene, {.pools = {.brick_bytes = 1000}});
         FAIL() << "a pool of 1000 bytes was accepted";
     } catch (const Error& error) {
         EXPECT_EQ(error.fault(), Fault::usage);
         EXPECT_NE(error.way_out().find("MiB"), std::string::npos) << error.way_out();
     }
-    Renderer renderer = make_renderer(scene, {.max_resolution = 64});
+    Renderer renderer = make_renderer(scene, {.tree = {.max_resolution = 64}});
     View view;
     view.camera.target = view.camera.eye;
     EXPECT_THROW((void)renderer.render(view), Error);
@@ -402,7 +406,7 @@ TEST_F(RendererTest, ImpossibleTreesPoolsAndViewsAreRefusedWithAWayOut) {
     view.camera.eye = {1e39, 0.0, 0.0};
     EXPECT_THROW((void)renderer.render(view), Error) << "too far for a float";
     view = View{};
-    view.width = 0;
+    view.size.width = 0;
     EXPECT_THROW((void)renderer.render(view), Error);
 }
 

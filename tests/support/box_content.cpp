@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <glad/gl.h>
+
 #include "shaders/interop/pool.h"
 
 namespace cairn::test {

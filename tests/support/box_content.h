@@ -23,6 +23,7 @@ class BoxContent final : public renderer::Content, public renderer::Oracle, publ
 public:
     BoxContent(const renderer::TreeShape& shape, const BoxOptions& options);
 
+    [[nodiscard]] const renderer::TreeShape& shape() const override { return shape_; }
     [[nodiscard]] renderer::Oracle& oracle() override { return *this; }
     [[nodiscard]] renderer::Producer& producer() override { return *this; }
     [[nodiscard]] const voxelizer::Grid& grid() const override { return grid_; }

@@ -284,12 +284,12 @@ optics::Image march_dense(const DenseVoxels& voxels, const renderer::View& view)
     const dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const dvec3 up = glm::cross(right, forward);
     const double half_height = std::tan(0.5 * view.camera.yfov);
-    const double half_width = half_height * view.width / view.height;
-    optics::Image image{view.width, view.height, {}};
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
-            const double px = (x + 0.5) / view.width * 2.0 - 1.0;
-            const double py = (y + 0.5) / view.height * 2.0 - 1.0;
+    const double half_width = half_height * view.size.width / view.size.height;
+    optics::Image image{view.size.width, view.size.height, {}};
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
+            const double px = (x + 0.5) / view.size.width * 2.0 - 1.0;
+            const double py = (y + 0.5) / view.size.height * 2.0 - 1.0;
             const dvec3 direction = glm::normalize(forward + px * half_width * right - py * half_height * up);
             const Hit hit = primary_ray(voxels, eye, direction);
             const double alpha = 1.0 - hit.transmittance;
@@ -303,7 +303,8 @@ optics::Image march_dense(const DenseVoxels& voxels, const renderer::View& view)
                 };
                 const double facing = std::max(glm::dot(normal, to_light(point)), 0.0);
                 double visibility = 1.0;
-                if (view.shadow == renderer::Shadow::hard && facing > 0.0 && alpha >= 1.0 / 512.0) {
+                if (view.shadow.kind != renderer::ShadowQuality::Kind::none && facing > 0.0 &&
+                    alpha >= 1.0 / 512.0) {
                     const double reach =
                         view.light.positional ? glm::length(place(view.light.position) - point) : 1e30;
                     visibility = shadow_ray(voxels, point, normal, to_light(point), reach);

@@ -11,6 +11,7 @@
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
 #include "scenes/snapshot.h"
+#include "tests/support/voxel_renderer.h"
 #include "voxelizer/grid.h"
 
 /// Pictures of meshes beside voxels, and how they are compared.
@@ -28,19 +29,19 @@ inline std::shared_ptr<MeshRaster> raster(const scenes::Scene& scene) {
 }
 
 inline Renderer voxels_of(const scenes::Scene& scene, int resolution) {
-    return Renderer(scene, scenes::take_snapshot(scene), {.max_resolution = resolution});
+    return voxel_renderer(scene, scenes::take_snapshot(scene), {.tree = {.max_resolution = resolution}});
 }
 
 /// Lit from everywhere, with the finest voxels: what a pixel shows is told by its colour.
 inline View flat_view(const glm::dvec3& eye, const glm::dvec3& target, int width = 155, int height = 115) {
     View view;
-    view.width = width;
-    view.height = height;
+    view.size.width = width;
+    view.size.height = height;
     view.camera.eye = eye;
     view.camera.target = target;
     view.light.ambient = 1.0F;
-    view.shadow = renderer::Shadow::none;
-    view.pixel_error = 1e-6;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
+    view.detail.pixel_error = 1e-6;
     return view;
 }
 

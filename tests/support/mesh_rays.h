@@ -37,12 +37,13 @@ inline std::vector<WorldTriangle> world_triangles(const scenes::Snapshot& snapsh
 /// Through places of a picture: (0.5, 0.5) is the centre of the pixel at the top left.
 class PictureRays {
 public:
-    explicit PictureRays(const renderer::View& view) : eye(view.camera.eye), size_(view.width, view.height) {
+    explicit PictureRays(const renderer::View& view)
+        : eye(view.camera.eye), size_(view.size.width, view.size.height) {
         forward_ = glm::normalize(view.camera.target - view.camera.eye);
         const double half = std::tan(0.5 * view.camera.yfov);
         right_ = glm::normalize(glm::cross(forward_, view.camera.up));
         up_ = glm::cross(right_, forward_) * half;
-        right_ *= half * view.width / view.height;
+        right_ *= half * view.size.width / view.size.height;
     }
     [[nodiscard]] glm::dvec3 direction(const glm::dvec2& place) const {
         const glm::dvec2 p = place / size_ * 2.0 - 1.0;

@@ -1,13 +1,14 @@
 #include "tests/support/probe.h"
 
-#include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "base/error.h"
 #include "gl/handle.h"
 #include "gl/program.h"
 #include "gl/shader_source.h"
 #include "renderer/march/march_programs.h"
-#include "shaders/interop/march.h"
+#include "renderer/produce/fractal_content.h"
 #include "shaders/interop/tile_query.h"
 #include "shaders/interop/windows.h"
 
@@ -66,7 +67,13 @@ gl::Program build(const renderer::TreeShape& shape) {
         defines.push_back(define);
     defines.emplace_back("RAYS_WIDEN", "0");
     defines.emplace_back("VISIT_TURNS", "0");
-    const std::string text = gl::ShaderSource().resolve("march/march.glsl", defines).text + probe_shader;
+    return build_on_march(defines, probe_shader);
+}
+
+}  // namespace
+
+gl::Program build_on_march(const gl::Defines& defines, const std::string& added) {
+    const std::string text = gl::ShaderSource().resolve("march/march.glsl", defines).text + added;
     const char* source = text.c_str();
     const gl::ShaderHandle shader(glCreateShader(GL_COMPUTE_SHADER));
     glShaderSource(shader.id(), 1, &source, nullptr);
@@ -79,86 +86,52 @@ gl::Program build(const renderer::TreeShape& shape) {
     if (linked == 0) {
         std::string log(4000, ' ');
         glGetShaderInfoLog(shader.id(), GLsizei(log.size()), nullptr, log.data());
-        throw Error(Fault::internal, "probe", log, "mend the shader in tests/support/probe.cpp");
+        throw Error(Fault::internal, "probe", log, "mend the shader that the test adds");
     }
     return gl::Program(std::move(program));
 }
 
-}  // namespace
-
 Prober::Prober(const renderer::TreeShape& shape, std::size_t brick_pool_bytes, std::size_t node_pool_bytes)
-    : shape_(shape),
-      content_(shape),
-      pool_(shape, false, brick_pool_bytes),
-      tree_(shape, pool_.slot_count(), node_pool_bytes, content_.oracle().child_mask({})),
+    : cache_(std::make_unique<renderer::FractalContent>(shape),
+             {.node_bytes = node_pool_bytes, .brick_bytes = brick_pool_bytes}),
       program_(build(shape)),
       windows_(sizeof(glm::ivec4) + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows"),
-      queries_(sizeof(interop::MarchCounters) + QUERY_CAPACITY * sizeof(std::uint32_t), "queries"),
-      usage_((std::size_t(pool_.slot_count()) + (2 * std::size_t(tree_.entry_count()) + 31) / 32) * 4,
-             "usage") {
-    usage_.fill(0);
-}
-
-void Prober::subdivide(std::uint32_t entry) {
-    const std::optional<std::uint32_t> first = tree_.add_children(entry);
-    for (int child = 0; first && child < shape_.child_count(); ++child) {
-        const renderer::Tile tile = renderer::child_of(tree_.tile(entry), shape_.n, child);
-        if (renderer::fractal::occupied(tile.position, shape_.n_shift() * tile.level))
-            tree_.set_child_mask(*first + std::uint32_t(child), content_.oracle().child_mask(tile));
-    }
-}
-
-void Prober::serve(const std::vector<std::uint32_t>& queries) {
-    std::vector<renderer::BrickRequest> requests;
-    for (const std::uint32_t query : queries) {
-        if (query % 2 == QUERY_CHILDREN) {
-            if (tree_.wants_children(query / 2)) subdivide(query / 2);
-        } else if (tree_.wants_brick(query / 2)) {
-            if (const std::optional<int> slot = tree_.add_brick(query / 2))
-                requests.push_back({tree_.tile(query / 2), *slot});
-        }
-    }
-    content_.producer().produce(requests, pool_);
-    tree_.upload();
-}
+      queries_(QUERY_CAPACITY, renderer::TileQueries::list, shape.has_windows(), {}) {}
 
 void Prober::run(std::vector<Probe>& probes, const std::vector<renderer::Window>& windows,
                  const renderer::Place& eye) {
+    const renderer::TreeShape& shape = cache_.shape();
     std::vector<interop::MarchWindow> marched =
-        renderer::march_windows(windows, shape_, eye, nullptr, glm::dvec3(0, 1, 0));
+        renderer::march_windows(windows, shape, eye, nullptr, glm::dvec3(0, 1, 0));
     gl::Buffer buffer(probes.size() * sizeof(Probe), "probes");
     buffer.write(0, probes.data(), buffer.size_bytes());
-    const std::size_t bits = std::size_t(pool_.slot_count()) * 4;
+    queries_.begin_frame({}, cache_.tree().entry_count(), cache_.pool().slot_count());
     for (;;) {
-        if (shape_.has_windows()) {
-            renderer::find_tiles(windows, tree_, marched, [&](std::uint32_t entry) { subdivide(entry); });
-            tree_.upload();
+        if (shape.has_windows()) {
+            renderer::find_tiles(windows, cache_.tree(), marched,
+                                 [&](std::uint32_t entry) { (void)cache_.subdivide(entry); });
+            cache_.upload();
             const glm::ivec4 count(int(marched.size()), 0, 0, 0);
             windows_.write(0, &count, sizeof(count));
             windows_.write(sizeof(count), marched.data(), marched.size() * sizeof(interop::MarchWindow));
             windows_.bind_uniform(UBO_WINDOWS);
         }
-        usage_.fill(bits, usage_.size_bytes() - bits, 0);
-        queries_.fill(0, sizeof(interop::MarchCounters), 0);
-        queries_.bind_storage(SSBO_QUERIES);
-        usage_.bind_storage(SSBO_USAGE);
+        queries_.begin_pass(false);
         buffer.bind_storage(probe_binding);
-        tree_.bind_for_reading();
-        pool_.bind_for_reading();
+        cache_.tree().bind_for_reading();
+        cache_.pool().bind_for_reading();
         program_.set("probe_count", unsigned(probes.size()));
-        program_.set("pass_number", round_);
-        program_.set("usage_query_offset", unsigned(pool_.slot_count()));
-        program_.set("query_capacity", unsigned(QUERY_CAPACITY));
+        program_.set("pass_number", round_.number);
+        queries_.set(program_);
         program_.use();
         gl::dispatch_threads(probes.size(), 64);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-        interop::MarchCounters counters{};
-        queries_.read(0, &counters, sizeof(counters));
-        ++round_;
-        tree_.begin_round(round_, usage_.read_all<std::uint32_t>(std::size_t(pool_.slot_count())));
-        if (counters.waiting_primary == 0) break;
-        serve(queries_.read_all<std::uint32_t>(std::min<std::size_t>(counters.queries, QUERY_CAPACITY),
-                                               sizeof(counters)));
+        const renderer::QueryBuffer::Told told = queries_.read(round_);
+        round_ = round_.next();
+        cache_.begin_round(round_, told.brick_stamps);
+        if (told.counters.waiting_primary == 0) break;
+        cache_.answer(told.queries);
+        cache_.upload();
     }
     buffer.read(0, probes.data(), buffer.size_bytes());
 }

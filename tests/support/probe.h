@@ -1,13 +1,16 @@
 #pragma once
 
-#include <memory>
+#include <string>
 #include <vector>
 
 #include "gl/buffer.h"
+#include "gl/program.h"
+#include "gl/shader_source.h"
+#include "renderer/march/query_buffer.h"
 #include "renderer/march/windows.h"
-#include "renderer/pool/brick_pool.h"
-#include "renderer/pool/tree.h"
-#include "renderer/produce/fractal_content.h"
+#include "renderer/pool/round.h"
+#include "renderer/pool/tree_shape.h"
+#include "renderer/produce/tile_cache.h"
 
 /// Rays of any origin and direction through the marching loop, for tests that ask where each meets the set of
 /// FractalContent first.
@@ -25,6 +28,10 @@ constexpr int PROBE_WAITS = 1;
 constexpr int PROBE_HIT = 2;
 constexpr int PROBE_MISSED = 3;
 
+/// A compute program of shaders/march/march.glsl and what a test adds to it: visit() and main().
+/// @throws Error (Fault::internal) with the compiler's log.
+[[nodiscard]] gl::Program build_on_march(const gl::Defines& defines, const std::string& added);
+
 class Prober {
 public:
     Prober(const renderer::TreeShape& shape, std::size_t brick_pool_bytes, std::size_t node_pool_bytes);
@@ -34,18 +41,11 @@ public:
              const renderer::Place& eye = {});
 
 private:
-    void serve(const std::vector<std::uint32_t>& queries);
-    void subdivide(std::uint32_t entry);
-
-    renderer::TreeShape shape_;
-    renderer::FractalContent content_;
-    renderer::BrickPool pool_;
-    renderer::Tree tree_;
+    renderer::TileCache cache_;
     gl::Program program_;
     gl::Buffer windows_;
-    gl::Buffer queries_;
-    gl::Buffer usage_;
-    std::uint32_t round_ = 1;
+    renderer::QueryBuffer queries_;
+    renderer::Round round_{1};
 };
 
 }  // namespace cairn::test

@@ -12,6 +12,7 @@
 #include "scenes/snapshot.h"
 #include "tests/support/mesh_rays.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 
@@ -23,10 +24,10 @@ public:
     static constexpr double light_height = 3.0;
     static constexpr double light_half = 0.4;
 
-    explicit SquareOverFloorScene(int size, const renderer::TreeOptions& options = {.max_resolution = 4096})
+    explicit SquareOverFloorScene(int size, const Settings& options = {.tree = {.max_resolution = 4096}})
         : size_(size),
-          renderer_(square_, scenes::take_snapshot(square_), options),
-          rays_(view(renderer::View{}.shadow_rays)) {
+          renderer_(voxel_renderer(square_, scenes::take_snapshot(square_), options)),
+          rays_(view(1)) {
         renderer_.set_mix(
             {.meshes = std::make_shared<renderer::MeshRaster>(floor_, scenes::take_snapshot(floor_)),
              .mesh_shadows = true,
@@ -36,18 +37,19 @@ public:
     /// @param moved  of the light's middle, from above the square's.
     [[nodiscard]] renderer::View view(int rays, bool cones = false, const glm::dvec2& moved = {}) const {
         renderer::View view;
-        view.width = size_;
-        view.height = size_;
+        view.size.width = size_;
+        view.size.height = size_;
         view.camera = {
             .eye = {0.0, 6.0, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0.0, 0.0, -1.0}, .yfov = 0.5};
-        view.pixel_error = 1e-6;
+        view.detail.pixel_error = 1e-6;
         view.light.positional = true;
         view.light.position = {moved.x, light_height, moved.y};
         view.light.shape = optics::LightShape::rectangle;
         view.light.half_u = {light_half, 0.0, 0.0};
         view.light.half_v = {0.0, 0.0, light_half};
-        view.shadow_rays = rays;
-        view.shadow_cones = cones;
+        view.shadow = {
+            .kind = cones ? renderer::ShadowQuality::Kind::cones : renderer::ShadowQuality::Kind::rays,
+            .samples = rays};
         return view;
     }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 #include <gtest/gtest.h>
 
 #include "renderer/pool/tree.h"

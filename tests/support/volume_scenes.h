@@ -10,7 +10,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/renderer.h"
+#include "renderer/produce/transfer_function.h"
+#include "renderer/view/view.h"
 #include "scenes/volume/volume.h"
 
 /// Volumes for tests, and how pictures of them are compared.
@@ -60,12 +61,12 @@ inline renderer::TransferFunction ramp(double extinction, double threshold = 0.1
 /// Lit from everywhere alike and with no shadows: a pixel is what the volume emits and lets through.
 inline renderer::View glowing_view(const scenes::Bounds& bounds, int width = 64, int height = 48) {
     renderer::View view;
-    view.width = width;
-    view.height = height;
+    view.size.width = width;
+    view.size.height = height;
     view.camera = optics::framing_camera(bounds, double(width) / height);
     view.light.ambient = 1.0F;
-    view.shadow = renderer::Shadow::none;
-    view.pixel_error = 1e-6;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
+    view.detail.pixel_error = 1e-6;
     return view;
 }
 

@@ -69,22 +69,22 @@ glm::dvec3 pixel_direction(const renderer::View& view, int x, int y) {
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
     const double half_height = std::tan(0.5 * view.camera.yfov);
-    const double half_width = half_height * view.width / view.height;
-    const double px = (x + 0.5) / view.width * 2.0 - 1.0;
-    const double py = (y + 0.5) / view.height * 2.0 - 1.0;
+    const double half_width = half_height * view.size.width / view.size.height;
+    const double px = (x + 0.5) / view.size.width * 2.0 - 1.0;
+    const double py = (y + 0.5) / view.size.height * 2.0 - 1.0;
     return glm::normalize(forward + px * half_width * right - py * half_height * up);
 }
 
 optics::Image march_densities(const Densities& densities, const renderer::TransferFunction& transfer,
                               const renderer::View& view, double steps_a_voxel) {
-    optics::Image image{view.width, view.height, {}};
+    optics::Image image{view.size.width, view.size.height, {}};
     const auto encoded = [](double linear) {
         const double c = std::clamp(linear, 0.0, 1.0);
         const double srgb = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
         return std::uint8_t(std::lround(srgb * 255.0));
     };
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
             Gathered seen = march_densities(densities, transfer, view.camera.eye, pixel_direction(view, x, y),
                                             steps_a_voxel);
             if (seen.transmittance <= 1.0 / 512.0) {

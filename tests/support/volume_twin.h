@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "renderer/march/transfer_function.h"
+#include "renderer/produce/transfer_function.h"
 #include "renderer/produce/volume_field.h"
 #include "renderer/renderer.h"
 

@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
                       SceneAt{MASKS "5.gltf", {64}}, SceneAt{MASKS "6.gltf", {64}}),
     name_of);
 
-// ---- Every file, as far as it is quick; bench/check_scenes looks at all of them, finely
+// ---- Every file, as far as it is quick; `cairn bench check` looks at all of them, finely
 // -----------------------------
 
 constexpr std::uint64_t most_triangles = 250000;
@@ -138,7 +138,8 @@ protected:
                            const Surface& whole_surface) {
         const double extent = whole_surface.grid.voxel_size * coarse;
         for (const double part : {1e-1, 1e-2, 1e-4}) {
-            const glm::dvec3 middle = whole_surface.grid.world_from_lattice(random_vertex(whole_surface));
+            const glm::dvec3 middle = whole_surface.grid.origin + glm::dvec3(random_vertex(whole_surface)) *
+                                                                      whole_surface.grid.lattice_unit();
             scenes::Bounds bounds;
             bounds.add(middle - 0.5 * part * extent);
             bounds.add(middle + 0.5 * part * extent);

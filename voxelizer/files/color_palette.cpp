@@ -26,16 +26,6 @@ std::size_t nearest(const std::vector<glm::dvec3>& colors, const glm::dvec3& col
 
 }  // namespace
 
-glm::u8vec3 srgb_from_linear(const glm::vec3& linear) {
-    glm::u8vec3 out;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double c = std::clamp(double(linear[axis]), 0.0, 1.0);
-        const double encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
-        out[axis] = std::uint8_t(std::lround(255.0 * encoded));
-    }
-    return out;
-}
-
 std::uint32_t ColorPalette::cell_of(const glm::u8vec3& color) {
     return std::uint32_t(color.r >> 2) << 12 | std::uint32_t(color.g >> 2) << 6 | std::uint32_t(color.b >> 2);
 }

@@ -9,9 +9,6 @@
 
 namespace cairn::voxelizer {
 
-/// 8 bits a channel, sRGB.
-[[nodiscard]] glm::u8vec3 srgb_from_linear(const glm::vec3& linear);
-
 /// Finds at most 255 colours for many. Up to 255 different ones are kept as they are; more are gathered in
 /// 64^3 cells of the sRGB cube, which are cut by their median (Heckbert 1982) and then moved to the means of
 /// what is nearest to them (Lloyd 1982). The same whatever order the colours come in. Memory: 8 MiB.
@@ -41,8 +38,8 @@ private:
     [[nodiscard]] glm::dvec3 mean_of(const Cells& cells) const;
     void move_to_means(const Cells& all);
 
-    std::map<std::uint32_t, std::uint8_t>
-        exact_;  ///< of 0xRRGGBB; one more than fits when there are too many
+    /// Index of each colour 0xRRGGBB. If there are more colours than the capacity, one more than fit.
+    std::map<std::uint32_t, std::uint8_t> exact_;
     std::vector<Cell> cells_ = std::vector<Cell>(64 * 64 * 64);
     std::vector<glm::u8vec3> colors_;
     std::vector<std::uint8_t> index_of_cell_;

@@ -29,7 +29,7 @@ void VoxelRows::gather(const VoxelTile& tile) {
     TurnedTile& turned = tiles_.emplace_back();
     turned.first_word = std::size_t(tile.origin[row_axis_]) / 32;
     turned.slice = tile.origin[slice_axis];
-    turned.numbers.assign(blocks_a_side * VOXEL_TILE_SIDE * blocks_a_side, no_block);
+    turned.numbers.assign(blocks_per_side * VOXEL_TILE_SIDE * blocks_per_side, no_block);
     for (int x_block = 0; x_block < tile.bits.words_per_row(); ++x_block) {
         for (int slice = 0; slice < size[slice_axis]; ++slice) {
             for (int low = 0; low < size[row_axis_]; low += 32) {
@@ -43,8 +43,9 @@ void VoxelRows::gather(const VoxelTile& tile) {
                 }
                 if (any == 0) continue;
                 transpose(block);
-                turned.numbers[(std::size_t(x_block) * VOXEL_TILE_SIDE + std::size_t(slice)) * blocks_a_side +
-                               std::size_t(low) / 32] = std::uint16_t(turned.blocks.size());
+                turned
+                    .numbers[(std::size_t(x_block) * VOXEL_TILE_SIDE + std::size_t(slice)) * blocks_per_side +
+                             std::size_t(low) / 32] = std::uint16_t(turned.blocks.size());
                 turned.blocks.push_back(block);
             }
         }
@@ -62,8 +63,8 @@ bool VoxelRows::fill_row(std::span<const TurnedTile> tiles, int x, int slice) {
     std::uint32_t any = 0;
     for (const TurnedTile& tile : tiles) {
         const std::size_t first =
-            (std::size_t(x / 32) * VOXEL_TILE_SIDE + std::size_t(slice)) * blocks_a_side;
-        for (std::size_t i = 0; i < blocks_a_side; ++i) {
+            (std::size_t(x / 32) * VOXEL_TILE_SIDE + std::size_t(slice)) * blocks_per_side;
+        for (std::size_t i = 0; i < blocks_per_side; ++i) {
             const std::uint16_t number = tile.numbers[first + i];
             if (number == no_block) continue;
             const std::uint32_t bits = tile.blocks[number][std::size_t(x % 32)];

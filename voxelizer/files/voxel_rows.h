@@ -28,7 +28,7 @@ public:
     }
 
     /// Gives out what is left. All rows come in order, x slowest:
-    /// sink.row(std::span<const std::uint32_t>), 32 voxels a word; or sink.empty_rows(std::uint64_t count).
+    /// sink.row(std::span<const std::uint32_t>), 32 voxels per word; or sink.empty_rows(std::uint64_t count).
     template <typename Sink>
     void finish(Sink& sink) {
         write_slabs(size_.x, sink);
@@ -37,12 +37,13 @@ public:
 private:
     /// Word i holds row voxels 0 to 31 of x = i.
     using Block = std::array<std::uint32_t, 32>;
-    static constexpr std::size_t blocks_a_side = VOXEL_TILE_SIDE / 32;
+    static constexpr std::size_t blocks_per_side = VOXEL_TILE_SIDE / 32;
     static constexpr std::uint16_t no_block = 0xFFFF;
     struct TurnedTile {
-        std::size_t first_word = 0;          ///< along the row
-        int slice = 0;                       ///< low end along the second axis
-        std::vector<std::uint16_t> numbers;  ///< of blocks: (x block, slice, row block)
+        std::size_t first_word = 0;  ///< the tile's low end along the row, in words
+        int slice = 0;               ///< the tile's low end along the second axis, in voxels
+        /// Number in `blocks` of each block (x block, slice, row block); no_block: the block is empty.
+        std::vector<std::uint16_t> numbers;
         std::vector<Block> blocks;
     };
 

@@ -12,8 +12,8 @@ namespace cairn::voxelizer {
 /// a tile, less at the grid's high ends.
 constexpr int VOXEL_TILE_SIDE = 128;
 
-/// What a voxel carries beside its bit: one of each an occupied voxel of a tile, in the order of
-/// BitGrid::words (x runs fastest, then y, then z). Empty when not asked for.
+/// What a voxel carries beside its bit: one entry per occupied voxel of a tile, in the order of
+/// BitGrid::words (x runs fastest, then y, then z). Empty if not asked for.
 struct VoxelAttributes {
     std::vector<glm::vec3> colors;   ///< linear base colour, each in [0, 1]
     std::vector<glm::vec3> normals;  ///< world space, of length 1; 0 where the parts cancel
@@ -33,7 +33,9 @@ class VoxelWriter {
 public:
     virtual ~VoxelWriter() = default;
     VoxelWriter(const VoxelWriter&) = delete;
+    VoxelWriter(VoxelWriter&&) = delete;
     VoxelWriter& operator=(const VoxelWriter&) = delete;
+    VoxelWriter& operator=(VoxelWriter&&) = delete;
 
     [[nodiscard]] virtual bool wants_attributes() const { return false; }
     /// @throws Error as OutputFile does, or Fault::memory.

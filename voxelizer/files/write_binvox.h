@@ -12,9 +12,9 @@ namespace cairn::voxelizer {
 /// fastest, then z, then x. The centre of voxel (i, j, k) lies at translate + scale * (i + 0.5, j + 0.5, k +
 /// 0.5) / dim.
 ///
-/// The format asks for a cube and has one scale. A grid that is none is filled up with empty voxels past its
-/// high ends, so that every reader finds each voxel in its place; empty space costs a byte for 127 voxels.
-/// Memory: VoxelRows'.
+/// The format asks for a cube and has one scale. A grid that is not a cube is filled up with empty voxels
+/// past its high ends, so that every reader finds each voxel in its place; empty space costs a byte for 127
+/// voxels. Memory: as VoxelRows.
 [[nodiscard]] std::unique_ptr<VoxelWriter> make_binvox_writer(const std::filesystem::path& path,
                                                               const Grid& grid);
 

@@ -21,8 +21,8 @@
 namespace cairn::voxelizer {
 namespace {
 
-// The tree of all common grids, "5_4_3": a leaf has 8 voxels a side, a node 16 leaves, and an upper node 32
-// nodes. A node is a tile. Children are numbered with z fastest, then y, then x; so are voxels.
+// The tree of all common grids, "5_4_3": a leaf has 8 voxels along each side, a node 16 leaves, and an upper
+// node 32 nodes. A node is a tile. Children are numbered with z fastest, then y, then x; so are voxels.
 constexpr int leaf_side = 8;
 constexpr int node_leaves = 16;
 constexpr int upper_nodes = 32;
@@ -135,7 +135,7 @@ std::size_t LeafLayout::place_of(const glm::ivec3& v) const {
 
 struct GridKind {
     std::string_view name;
-    int width;    ///< values a voxel
+    int width;    ///< values per voxel
     bool second;  ///< takes normals, not colours
     std::string_view type;
     std::string_view grid_class;

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "base/side_file.h"
+#include "optics/srgb.h"
 #include "voxelizer/files/color_palette.h"
 #include "voxelizer/files/voxel_tiles.h"
 
@@ -122,7 +123,7 @@ void VoxWriter::add(const VoxelTile& tile) {
     std::vector<Colored> voxels;
     voxels.reserve(count);
     for_each_voxel(tile.bits, [&](const glm::ivec3& v, std::size_t number) {
-        const glm::u8vec3 color = colors.empty() ? light_grey : srgb_from_linear(colors[number]);
+        const glm::u8vec3 color = colors.empty() ? light_grey : optics::srgb8_from_linear(colors[number]);
         palette_.add(color);
         const glm::ivec3 p = in_model + v;
         voxels.push_back({{std::uint8_t(p.x), std::uint8_t(model.size.y - 1 - p.z), std::uint8_t(p.y)},

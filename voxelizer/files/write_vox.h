@@ -17,9 +17,11 @@ namespace cairn::voxelizer {
 /// in the editor's scene. The format knows no world: the name of the scene's root tells the grid's origin and
 /// the voxel size, as "cairn X Y Z, origin X Y Z, voxel S".
 ///
-/// MagicaVoxel shows 2000 voxels a side; other readers take more, and so does this. @throws Error
-/// Fault::usage, from add(): past 2 GiB, about 500 million voxels, the format's sizes end. Memory: one tile,
-/// 32 bytes a tile that holds voxels, ColorPalette's. A temporary file holds 6 bytes a voxel.
+/// MagicaVoxel shows 2000 voxels along each side; other readers take more, and so does this writer.
+///
+/// Memory: one tile, 32 bytes per tile that holds voxels, and a ColorPalette. A temporary file holds 6 bytes
+/// per voxel.
+/// @throws Error  Fault::usage, from add(): past 2 GiB, about 500 million voxels, the format's sizes end.
 [[nodiscard]] std::unique_ptr<VoxelWriter> make_vox_writer(const std::filesystem::path& path,
                                                            const Grid& grid);
 

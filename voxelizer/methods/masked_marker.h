@@ -19,7 +19,7 @@ struct MaskCandidate {
 };
 
 /// Marks the queued triangles that an alpha mask cuts: one pass lists the voxels that they meet, a second
-/// looks at the texels, one thread a voxel, because the work for a voxel varies a thousandfold.
+/// looks at the texels, one thread per voxel, because the work for a voxel varies a thousandfold.
 class MaskedMarker {
 public:
     explicit MaskedMarker(const gl::ShaderSource& shaders);

@@ -39,7 +39,7 @@ private:
         [[nodiscard]] auto operator<=>(const HalveVariant&) const = default;
     };
     gl::ProgramFamily<HalveVariant> halve_;
-    gl::TextureHandle finest_;   ///< of the buffer that the last call was given
+    gl::TextureHandle finest_;   ///< a view of the buffer that the last call was given
     std::vector<Level> levels_;  ///< kept for the next pyramid of the same size and reduction
     glm::ivec3 finest_size_{0};
     Reduction reduction_ = Reduction::xyz;

@@ -10,11 +10,13 @@ namespace cairn::voxelizer {
 
 /// A part of a region that is rasterized at once.
 struct RasterTile {
-    glm::ivec3 place{0};        ///< of its low corner, voxels from the region's; x is a multiple of 32
+    /// Its low corner, in voxels from the region's; x is a multiple of 32.
+    glm::ivec3 place{0};
     glm::ivec3 size{0};         ///< voxels
     glm::ivec3 lattice_low{0};  ///< its low corner in lattice units
-    glm::ivec3 region_end{0};   ///< the region's high corner, lattice units from the tile's low one
-    int voxel_shift = 0;        ///< a voxel is 2^voxel_shift lattice units
+    /// The region's high corner, lattice units from the tile's low one.
+    glm::ivec3 region_end{0};
+    int voxel_shift = 0;  ///< a voxel is 2^voxel_shift lattice units
 
     /// Texels that the layers of all directions take.
     [[nodiscard]] glm::ivec2 plane(int directions) const;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "gl/buffer_offset.h"
 #include "gl/draw_state.h"
 #include "shaders/interop/surface.h"
 #include "voxelizer/surface/far_clip.h"
@@ -205,8 +206,7 @@ void RasterVoxelizer::draw_list(unsigned kind, unsigned count, const RasterTile&
         glDrawArraysInstanced(mode, 0, GLsizei(count * vertices), instances);
     } else {
         const std::size_t first = (RASTER_KINDS + kind * list_words) * sizeof(std::uint32_t);
-        glDrawElements(mode, GLsizei(count * corners_of(kind)), GL_UNSIGNED_INT,
-                       reinterpret_cast<const void*>(first));
+        glDrawElements(mode, GLsizei(count * corners_of(kind)), GL_UNSIGNED_INT, gl::buffer_offset(first));
     }
 }
 

@@ -20,15 +20,16 @@ namespace cairn::voxelizer {
 /// How a primitive finds its layer.
 enum class LayerPath : std::uint8_t {
     geometry_shader,  ///< OpenGL 4.5 alone
-    vertex_shader     ///< ARB_shader_viewport_layer_array, and storage buffers in vertex shaders
+    /// ARB_shader_viewport_layer_array, and storage buffers in vertex shaders.
+    vertex_shader
 };
 
 /// What tells the programs that rasterize apart.
 struct RasterVariant {
     int corners = 3;     ///< of a primitive: 3, 2 or 1
     bool cover = false;  ///< primitives are enlarged to all pixels that they touch
-    int axes =
-        1;  ///< directions in which a primitive is drawn: 1 or 3; 0: the one that sees it most squarely
+    /// Directions in which a primitive is drawn: 1 or 3; 0: the one that sees it most squarely.
+    int axes = 1;
     bool masked = false;  ///< alpha masks are looked at
     int targets = 1;      ///< of the slices: 1, 2, 4 or 8
     [[nodiscard]] auto operator<=>(const RasterVariant&) const = default;
@@ -37,8 +38,8 @@ struct RasterVariant {
 /// Every variant that a method of RasterVoxelizer may ask for.
 [[nodiscard]] std::vector<RasterVariant> valid_raster_variants();
 
-/// Voxelizes by rasterization into one bit a slice: the methods of Forest et al. 2009, section 2, to compare
-/// with. None of them is exact (`cairn check` counts how far off they are).
+/// Voxelizes by rasterization into one bit per slice: the methods of Forest et al. 2009, section 2, to
+/// compare with. None of them is exact (`cairn check` counts how far off they are).
 ///
 /// `slice_map` looks along z alone, as Eisemann and Décoret 2006: a fragment marks the voxel at its pixel's
 /// centre. Surfaces steep to z have holes, and what is parallel to z vanishes.
@@ -60,7 +61,7 @@ struct RasterVariant {
 /// points more than 2^16 voxels away bend by the driver's rounding. What lies within a float's rounding of a
 /// boundary may fall to another side in another region.
 ///
-/// Memory: targets of one bit a voxel and direction, at most RASTER_TARGET_MIB at a time, and 16 MiB of
+/// Memory: targets of one bit per voxel and direction, at most RASTER_TARGET_MIB at a time, and 16 MiB of
 /// lists.
 class RasterVoxelizer final : public Voxelizer {
 public:

@@ -44,7 +44,7 @@ SliceTargets::SliceTargets(const glm::ivec2& plane, int layers, int slices) : pl
         throw Error(Fault::memory, "render targets of the voxelizer",
                     fmt::format("the driver refuses {} of {} x {} x {} texels, {:.1f} MiB", count, plane.x,
                                 plane.y, layers, double(bytes(plane, layers, slices)) / 0x1p20),
-                    "choose a lower resolution, or --method conservative");
+                    "choose a lower resolution, or Method::conservative");
     }
 }
 

@@ -2,14 +2,15 @@
 
 #include <vector>
 
+#include <glad/gl.h>
 #include <glm/glm.hpp>
 
 #include "gl/handle.h"
 
 namespace cairn::voxelizer {
 
-/// Render targets of one bit a voxel: RGBA32UI textures of 128 slices each, one layer a direction (Forest et
-/// al. 2009, section 2.1).
+/// Render targets of one bit per voxel: RGBA32UI textures of 128 slices each, one layer per direction (Forest
+/// et al. 2009, section 2.1).
 class SliceTargets {
 public:
     SliceTargets() = default;

@@ -37,7 +37,7 @@ public:
     /// @throws Error   Fault::memory when the bits pass the driver's shader-storage limit: gather tile by
     /// tile.
     ///
-    /// Memory: 56 bytes an occupied voxel, at most 56 MiB, 16 MiB of pairs, and the bits.
+    /// Memory: 56 bytes per occupied voxel, at most 56 MiB, 16 MiB of pairs, and the bits.
     [[nodiscard]] VoxelAttributes gather(const GpuSurface& surface, const Region& region, const BitGrid& bits,
                                          std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 

@@ -14,11 +14,11 @@ namespace cairn::voxelizer {
 
 struct TileOptions {
     int tile_side = VOXEL_TILE_SIDE;  ///< a multiple of 32
-    /// A grid whose bits take up to so much is marked at once (512^3 voxels).
+    /// Bytes of bits up to which a grid is marked at once (512^3 voxels).
     std::size_t whole_bytes = std::size_t(16) << 20U;
-    /// A larger one in regions of so much, but at least one tile: parts of slabs that are one tile wide along
-    /// x. Measured by bench/region_bench: smaller ones look at large triangles more often, larger ones gain
-    /// nothing.
+    /// Bytes of bits of a region of a larger grid, but at least one tile: regions are parts of slabs that are
+    /// one tile wide along x. Measured by `cairn bench region-sizes`: smaller ones look at large triangles
+    /// more often, larger ones gain nothing.
     std::size_t region_bytes = std::size_t(16) << 20U;
     /// Marks the first region twice, and leaves the first time out of the figures: drivers compile programs
     /// at their first use.
@@ -26,11 +26,13 @@ struct TileOptions {
 };
 
 struct TileStatistics {
-    std::uint64_t occupied = 0;  ///< voxels
-    std::uint64_t tiles = 0;     ///< that held any
+    std::uint64_t occupied = 0;  ///< occupied voxels
+    std::uint64_t tiles = 0;     ///< tiles that held a voxel
     std::uint64_t regions = 0;
-    std::uint64_t triangles = 0;  ///< given to the regions, one that meets several counted for each
-    double milliseconds = 0.0;    ///< Voxelizer::last_milliseconds, over all regions
+    /// Triangles given to the regions; a triangle that meets several regions counts once per region.
+    std::uint64_t triangles = 0;
+    /// Sum of Voxelizer::last_milliseconds over all regions.
+    double milliseconds = 0.0;
 };
 
 /// Takes over a tile that holds at least one voxel; its attributes are empty.
@@ -41,7 +43,7 @@ using TileProgress = std::function<bool(double)>;
 /// Voxelizes a grid of any size, tile by tile in the order that VoxelWriter wants, in bounded memory: two
 /// regions and one tile beside the surface and its index. What the index says is empty costs nothing.
 ///
-/// @param index  of the same surface; the Surface itself is not needed any more.
+/// @param index  the index of the same surface; the Surface itself is not needed any more.
 /// @throws Error  as Voxelizer::voxelize; Fault::interrupted when `progress` says to stop; whatever `sink`
 ///                throws.
 TileStatistics voxelize_tiles(Voxelizer& voxelizer, const GpuSurface& surface, TriangleIndex& index,

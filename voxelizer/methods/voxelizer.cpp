@@ -14,10 +14,13 @@
 #include "shaders/interop/surface.h"
 #include "shaders/interop/voxelize.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/methods/pyramid_builder.h"
 #include "voxelizer/methods/raster_voxelizer.h"
 
 namespace cairn::voxelizer {
 namespace {
+
+static_assert(max_region_side == VOXEL_REGION_SIDE, "the shaders take other regions");
 
 constexpr std::array<std::pair<Method, std::string_view>, 4> method_names = {
     {{Method::conservative, "conservative"},
@@ -66,7 +69,7 @@ Method method_named(std::string_view name) {
         if (name == its_name) return method;
         known += fmt::format("{}{}", known.empty() ? "" : ", ", its_name);
     }
-    throw Error(Fault::usage, "--method", fmt::format("there is no method \"{}\"", name),
+    throw Error(Fault::usage, "", fmt::format("there is no method \"{}\"", name),
                 fmt::format("choose one of: {}", known));
 }
 
@@ -98,7 +101,14 @@ std::unique_ptr<Voxelizer> make_voxelizer(Method method, const gl::ShaderSource&
     throw Error(Fault::internal, "make_voxelizer", "a method that is not one");
 }
 
-Voxelizer::Voxelizer(const gl::ShaderSource& shaders) : shaders_(shaders), pyramid_(shaders) {}
+Voxelizer::Voxelizer(const gl::ShaderSource& shaders)
+    : shaders_(shaders), pyramid_(std::make_unique<PyramidBuilder>(shaders)) {}
+
+Voxelizer::~Voxelizer() = default;
+
+double Voxelizer::last_pyramid_milliseconds() const {
+    return pyramid_->last_milliseconds();
+}
 
 void Voxelizer::mark_timed(const GpuSurface& surface, const Region& region,
                            std::optional<std::span<const std::uint32_t>> subset) {
@@ -146,7 +156,7 @@ BitmaskPyramid Voxelizer::voxelize_pyramid(const GpuSurface& surface, const Regi
                                            std::optional<std::span<const std::uint32_t>> subset,
                                            Reduction reduction) {
     mark_timed(surface, region, subset);
-    return pyramid_.build(bits_, region.size, reduction);
+    return pyramid_->build(bits_, region.size, reduction);
 }
 
 }  // namespace cairn::voxelizer

@@ -11,52 +11,59 @@
 #include "gl/shader_source.h"
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/grid.h"
-#include "voxelizer/methods/pyramid_builder.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::voxelizer {
 
+class PyramidBuilder;
+
+/// The most voxels of a region along an axis (VOXEL_REGION_SIDE in the shaders).
+constexpr int max_region_side = 16384;
+
 /// How voxels are found. Only `conservative` is exact; the others are Forest et al.'s, to compare with.
 enum class Method : std::uint8_t {
-    conservative,             ///< every voxel whose closed box meets a triangle: conservative_voxelizer.h
-    slice_map,                ///< rasterized along z: raster_voxelizer.h, as the next two
-    three_axis,               ///< rasterized along x, y and z
-    three_axis_conservative,  ///< the same with enlarged triangles
+    /// Every voxel whose closed box meets a triangle: conservative_voxelizer.h.
+    conservative,
+    slice_map,                ///< rasterized along z: raster_voxelizer.h
+    three_axis,               ///< rasterized along x, y and z: raster_voxelizer.h
+    three_axis_conservative,  ///< three_axis with enlarged triangles
 };
 
-/// @throws Error  Fault::usage: there is no such method; says which there are.
+/// @throws Error  Fault::usage if there is no such method; says which methods there are.
 [[nodiscard]] Method method_named(std::string_view name);
 [[nodiscard]] std::string_view name_of(Method method);
-/// All there are, in the order of the enumeration.
+/// All methods, in the order of the enumeration.
 [[nodiscard]] std::span<const Method> methods();
 
 /// Marks the voxels of a surface on the GPU, by one of the methods. Needs the current context of its
 /// construction.
 class Voxelizer {
 public:
-    virtual ~Voxelizer() = default;
+    virtual ~Voxelizer();
     Voxelizer(const Voxelizer&) = delete;
+    Voxelizer(Voxelizer&&) = delete;
     Voxelizer& operator=(const Voxelizer&) = delete;
+    Voxelizer& operator=(Voxelizer&&) = delete;
 
     /// @param subset  global triangle numbers, or none for all. Must hold every triangle that meets the
     ///                region for the bits to be right; others cost time only. Far triangles are always
     ///                marked.
     /// @throws Error  Fault::memory when the region's bits pass the driver's shader-storage limit: the
     ///                message says what would fit. Fault::usage when the region has more than
-    ///                VOXEL_REGION_SIDE voxels along an axis.
+    ///                max_region_side voxels along an axis.
     [[nodiscard]] BitGrid voxelize(const GpuSurface& surface, const Region& region,
                                    std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
-    /// The same into a grid of the caller's: where it held a region of this size before, nothing is
+    /// Voxelizes into a grid of the caller's. Where that held a region of this size before, nothing is
     /// allocated, on the CPU or the GPU (but for what alpha masks and far triangles leave to the CPU).
     void voxelize_into(const GpuSurface& surface, const Region& region, BitGrid& out,
                        std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
-    /// The same with the bits left on the GPU, BitGrid::words of the region; valid until the next call.
+    /// Voxelizes with the bits left on the GPU, BitGrid::words of the region; valid until the next call.
     const gl::Buffer& voxelize_on_gpu(const GpuSurface& surface, const Region& region,
                                       std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
-    /// The same with all coarser levels, both computed on the GPU.
+    /// Voxelizes the region and all coarser levels, both computed on the GPU.
     [[nodiscard]] BitmaskPyramid voxelize_pyramid(
         const GpuSurface& surface, const Region& region,
         std::optional<std::span<const std::uint32_t>> subset = std::nullopt,
@@ -66,17 +73,17 @@ public:
     /// an idle driver by the wall clock: the timer queries of llvmpipe do not see compute work.
     [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
     /// What the coarser levels of the last pyramid took on top.
-    [[nodiscard]] double last_pyramid_milliseconds() const { return pyramid_.last_milliseconds(); }
+    [[nodiscard]] double last_pyramid_milliseconds() const;
 
 protected:
     explicit Voxelizer(const gl::ShaderSource& shaders);
 
     /// What to mark of one chunk of the surface.
     struct ChunkPart {
-        std::size_t count = 0;             ///< of triangles
-        std::optional<gl::Buffer> subset;  ///< their numbers in the chunk; none: all
+        std::size_t count = 0;             ///< number of triangles
+        std::optional<gl::Buffer> subset;  ///< numbers of the triangles in the chunk; none: all
     };
-    /// @param parts  one a chunk
+    /// @param parts  one per chunk of the surface
     /// @param bits   BitGrid::words of the region; undefined before, all written after.
     virtual void mark(const GpuSurface& surface, const Region& region, std::span<const ChunkPart> parts,
                       gl::Buffer& bits) = 0;
@@ -88,7 +95,7 @@ private:
                     std::optional<std::span<const std::uint32_t>> subset);
 
     gl::ShaderSource shaders_;
-    PyramidBuilder pyramid_;
+    std::unique_ptr<PyramidBuilder> pyramid_;
     gl::Buffer bits_;
     std::vector<ChunkPart> parts_;
     double last_milliseconds_ = 0.0;

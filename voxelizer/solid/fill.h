@@ -36,38 +36,38 @@ namespace cairn::voxelizer {
 /// parity; where rows come out whole by chance, because as many faces are turned one way as the other, gaps
 /// between parts may be filled.
 ///
-/// Build the surface with SurfaceOptions::outside, or a grid that cuts through the scene (--bounds) has
-/// doubtful rows that are none.
+/// Build the surface with SurfaceOptions::outside. Without it, a grid that cuts through the scene
+/// (grid_over()) has rows that count as doubtful only because a crossing outside the grid is unknown.
 class SolidFill {
 public:
     static constexpr std::size_t default_memory_bytes = std::size_t(1) << 30;
 
     /// @param whole         the region that all tiles lie in
-    /// @param memory_bytes  what the crossings may take: 4 bytes a row, and 4 a crossing of rows that
-    ///                      are crossed an even number of times
-    /// @throws Error (Fault::memory) before they take more; says what would fit.
+    /// @param memory_bytes  what the crossings may take: 4 bytes per row, and 4 per crossing of the rows
+    ///                      that are crossed an even number of times
+    /// @throws Error (Fault::memory) if the crossings take more; says what would fit.
     SolidFill(const Surface& surface, const Region& whole, std::size_t memory_bytes = default_memory_bytes);
 
     /// Sets the bits of voxels that are inside.
     /// @param tile_origin  voxel of the root cube, as Region::origin; the tile lies within `whole`
-    /// @throws Error (Fault::usage) when it does not.
+    /// @throws Error (Fault::usage) if the tile does not lie within it.
     void add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const;
 
     /// Whether the mesh is closed. Decided by a sum of hashes over its edges, of 128 bits.
     [[nodiscard]] bool closed() const { return !along_y_; }
-    /// Rows that are doubtful, along all three axes, and of how many.
+    /// Doubtful rows along all three axes, out of row_count() rows.
     [[nodiscard]] std::uint64_t doubtful_rows() const { return doubtful_rows_; }
     [[nodiscard]] std::uint64_t row_count() const;
     [[nodiscard]] std::size_t size_bytes() const;
 
 private:
-    /// @param low  of the tile, from the region's low corner
+    /// @param low  the tile's low corner, in voxels from the region's low corner
     void fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const;
     void vote_on_slice(const glm::ivec3& low, int z, BitGrid& tile) const;
 
     Region whole_;
     RowCrossings along_x_;
-    std::optional<RowCrossings> along_y_, along_z_;  ///< of a mesh that is not closed
+    std::optional<RowCrossings> along_y_, along_z_;  ///< only if the mesh is not closed
     std::uint64_t doubtful_rows_ = 0;
 };
 

@@ -54,7 +54,7 @@ private:
 
     int u_, v_;  ///< the other two axes, cyclic
     int u_size_;
-    std::vector<std::uint32_t> ends_;  ///< of each row in `events_`
+    std::vector<std::uint32_t> ends_;  ///< per row, one past its last event in `events_`
     std::vector<Event> events_;
     std::vector<bool> odd_;
 };

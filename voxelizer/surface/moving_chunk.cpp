@@ -49,7 +49,7 @@ void append_influences(std::vector<interop::DeformInfluences>& sets, const scene
 
 }  // namespace
 
-struct MovingChunk::Parts {
+struct MovingChunk::Arrays {
     std::vector<std::array<std::uint32_t, 4>> vertices;
     std::vector<Vector> vectors;
     std::vector<interop::DeformInfluences> influences;
@@ -59,21 +59,21 @@ struct MovingChunk::Parts {
 MovingChunk::MovingChunk(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                          const SurfaceChunk& chunk, std::span<const std::uint32_t> first_joints, bool normals)
     : vertex_count_(std::uint32_t(chunk.sources.size())) {
-    Parts parts;
-    parts.vertices.reserve(chunk.sources.size());
+    Arrays arrays;
+    arrays.vertices.reserve(chunk.sources.size());
     const std::span<const SurfaceSource> sources(chunk.sources);
     for (std::size_t first = 0; first < sources.size();) {
         std::size_t last = first;
         while (last < sources.size() && sources[last].item == sources[first].item)
             ++last;
-        add_run(snapshot, sources.subspan(first, last - first), first_joints, scene, normals, parts);
+        add_run(snapshot, sources.subspan(first, last - first), first_joints, scene, normals, arrays);
         first = last;
     }
     const std::size_t limit = gl::query_limits().shader_storage_bytes;
-    vertices_ = upload_array(parts.vertices, "vertices at rest", limit);
-    vectors_ = upload_array(parts.vectors, "normals and morph targets", limit);
-    influences_ = upload_array(parts.influences, "skin weights", limit);
-    items_ = upload_array(parts.items, "moving items", limit);
+    vertices_ = upload_array(arrays.vertices, "vertices at rest", limit);
+    vectors_ = upload_array(arrays.vectors, "normals and morph targets", limit);
+    influences_ = upload_array(arrays.influences, "skin weights", limit);
+    items_ = upload_array(arrays.items, "moving items", limit);
     frame_ = gl::Buffer(
         sizeof(interop::DeformHeader) + std::max<std::size_t>(targets_.size(), 1) * sizeof(targets_[0]),
         "morph weights");
@@ -81,45 +81,45 @@ MovingChunk::MovingChunk(const scenes::Scene& scene, const scenes::Snapshot& sna
 
 void MovingChunk::add_run(const scenes::Snapshot& snapshot, std::span<const SurfaceSource> run,
                           std::span<const std::uint32_t> first_joints, const scenes::Scene& scene,
-                          bool normals, Parts& parts) {
+                          bool normals, Arrays& arrays) {
     const scenes::Item& item = snapshot.items[run.front().item];
     const scenes::Primitive& primitive = *item.primitive;
     interop::DeformItem out{};
-    out.first_vertex = std::uint32_t(parts.vertices.size());
+    out.first_vertex = std::uint32_t(arrays.vertices.size());
     out.matrix = matrix_of_item(run.front().item);
     out.first_joint = DEFORM_NONE;
-    out.first_influence = std::uint32_t(parts.influences.size());
+    out.first_influence = std::uint32_t(arrays.influences.size());
     out.first_normal = DEFORM_NONE;
     if (normals)
-        out.first_normal = append_vectors(parts.vectors, primitive.normals, primitive.positions.size(), run);
+        out.first_normal = append_vectors(arrays.vectors, primitive.normals, primitive.positions.size(), run);
     if (item.skinned) {
         out.first_joint = first_joints[std::size_t(scene.nodes[std::size_t(item.node)].skin)];
         out.set_count = std::uint32_t(1 + primitive.more_skin.size());
     }
     for (const SurfaceSource& source : run) {
         const glm::vec3& p = primitive.positions[source.vertex];
-        parts.vertices.push_back({std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
-                                  std::bit_cast<std::uint32_t>(p.z), std::uint32_t(parts.items.size())});
+        arrays.vertices.push_back({std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
+                                   std::bit_cast<std::uint32_t>(p.z), std::uint32_t(arrays.items.size())});
         if (!item.skinned) continue;
-        append_influences(parts.influences, primitive, source.vertex);
+        append_influences(arrays.influences, primitive, source.vertex);
     }
     out.first_target = std::uint32_t(targets_.size());
     out.target_count = std::uint32_t(primitive.morph_targets.size());
-    add_targets(item, run, out.first_normal != DEFORM_NONE, parts);
+    add_targets(item, run, out.first_normal != DEFORM_NONE, arrays);
     most_turns_ = std::max<std::size_t>(most_turns_, out.target_count + 4 * std::size_t(out.set_count));
-    parts.items.push_back(out);
+    arrays.items.push_back(out);
 }
 
 void MovingChunk::add_targets(const scenes::Item& item, std::span<const SurfaceSource> run, bool normals,
-                              Parts& parts) {
+                              Arrays& arrays) {
     const scenes::Primitive& primitive = *item.primitive;
     const std::size_t vertex_count = primitive.positions.size();
     for (std::size_t t = 0; t < primitive.morph_targets.size(); ++t) {
         const scenes::MorphTarget& target = primitive.morph_targets[t];
         interop::DeformTarget out{};
-        out.first_position = append_vectors(parts.vectors, target.positions, vertex_count, run);
+        out.first_position = append_vectors(arrays.vectors, target.positions, vertex_count, run);
         out.first_normal =
-            normals ? append_vectors(parts.vectors, target.normals, vertex_count, run) : DEFORM_NONE;
+            normals ? append_vectors(arrays.vectors, target.normals, vertex_count, run) : DEFORM_NONE;
         targets_.push_back(out);
         weight_sources_.push_back({std::size_t(item.node), t});
     }

@@ -17,7 +17,7 @@ namespace cairn::voxelizer {
 class MovingChunk {
 public:
     /// @param chunk         has `sources`, one item after the other
-    /// @param first_joints  one a skin of the scene: the matrix of its first joint
+    /// @param first_joints  per skin of the scene, the number of the matrix of its first joint
     /// @param normals       the chunk's normals move too
     /// @throws Error  Fault::memory when a buffer passes the driver's shader-storage limit.
     MovingChunk(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const SurfaceChunk& chunk,
@@ -38,21 +38,21 @@ public:
     [[nodiscard]] std::size_t most_turns() const { return most_turns_; }
 
 private:
-    struct Parts;  ///< arrays on their way to the driver
+    struct Arrays;  ///< what is on its way to the driver
     /// Where the weight of a target comes from.
     struct WeightSource {
         std::size_t node, target;
     };
     void add_run(const scenes::Snapshot& snapshot, std::span<const SurfaceSource> run,
                  std::span<const std::uint32_t> first_joints, const scenes::Scene& scene, bool normals,
-                 Parts& parts);
+                 Arrays& arrays);
     void add_targets(const scenes::Item& item, std::span<const SurfaceSource> run, bool normals,
-                     Parts& parts);
+                     Arrays& arrays);
 
     std::uint32_t vertex_count_ = 0;
     std::size_t most_turns_ = 0;
     std::vector<interop::DeformTarget> targets_;
-    std::vector<WeightSource> weight_sources_;  ///< one a target
+    std::vector<WeightSource> weight_sources_;  ///< one per target
     gl::Buffer vertices_;
     gl::Buffer vectors_;
     gl::Buffer influences_;

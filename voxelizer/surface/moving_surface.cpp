@@ -1,10 +1,15 @@
 #include "voxelizer/surface/moving_surface.h"
 
 #include <algorithm>
+#include <optional>
+#include <vector>
 
 #include "gl/limits.h"
+#include "gl/program.h"
+#include "scenes/pose.h"
 #include "shaders/interop/deform.h"
 #include "shaders/interop/surface.h"
+#include "voxelizer/surface/moving_chunk.h"
 #include "voxelizer/surface/upload_array.h"
 
 namespace cairn::voxelizer {
@@ -14,8 +19,42 @@ constexpr std::size_t matrix_numbers = 12;
 
 }  // namespace
 
-MovingSurface::MovingSurface(const scenes::Scene& scene, const scenes::When& when, const Grid& grid,
-                             const SurfaceOptions& options, const gl::ShaderSource& shaders)
+struct MovingSurface::Impl {
+    Impl(const scenes::Scene& scene, const scenes::When& when, const Grid& grid,
+         const SurfaceOptions& options, const gl::ShaderSource& shaders);
+    void move_to(double seconds);
+
+    /// What the snapshot said of an item that no moment changes.
+    struct MovingItem {
+        int node, instance;
+        bool skinned;
+    };
+    void add_skins(const scenes::Snapshot& snapshot);
+    void write_matrices(const scenes::Pose& pose);
+    void write_matrix(std::size_t number, const glm::dmat4& matrix);
+    /// Whether the GPU could place every vertex that matters.
+    [[nodiscard]] bool deform(const scenes::Pose& pose);
+    [[nodiscard]] bool any_far_triangle(std::size_t chunk);
+
+    const scenes::Scene& scene_;
+    scenes::When when_;
+    Grid grid_;
+    SurfaceOptions options_;
+    scenes::Poser poser_;
+    gl::Program deform_;
+    gl::Program find_far_;
+    std::vector<MovingItem> items_;
+    std::vector<std::uint32_t> first_joints_;  ///< per skin its first matrix; DEFORM_NONE: not used
+    std::vector<double> matrices_;             ///< twelve numbers per matrix
+    gl::Buffer matrix_buffer_;
+    std::vector<MovingChunk> chunks_;
+    GpuSurface on_gpu_;
+    std::optional<GpuSurface> on_cpu_;
+    std::uint64_t triangle_count_ = 0;
+};
+
+MovingSurface::Impl::Impl(const scenes::Scene& scene, const scenes::When& when, const Grid& grid,
+                          const SurfaceOptions& options, const gl::ShaderSource& shaders)
     : scene_(scene),
       when_(when),
       grid_(grid),
@@ -40,7 +79,7 @@ MovingSurface::MovingSurface(const scenes::Scene& scene, const scenes::When& whe
 }
 
 /// Numbers the matrices: those of the items, then those of the joints of each skin in use.
-void MovingSurface::add_skins(const scenes::Snapshot& snapshot) {
+void MovingSurface::Impl::add_skins(const scenes::Snapshot& snapshot) {
     first_joints_.assign(scene_.skins.size(), DEFORM_NONE);
     std::size_t count = MovingChunk::matrix_of_item(items_.size());
     for (const scenes::Item& item : snapshot.items) {
@@ -53,7 +92,7 @@ void MovingSurface::add_skins(const scenes::Snapshot& snapshot) {
     matrices_.resize(count * matrix_numbers);
 }
 
-void MovingSurface::write_matrix(std::size_t number, const glm::dmat4& matrix) {
+void MovingSurface::Impl::write_matrix(std::size_t number, const glm::dmat4& matrix) {
     double* out = &matrices_[number * matrix_numbers];
     for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 3; ++row)
@@ -61,7 +100,7 @@ void MovingSurface::write_matrix(std::size_t number, const glm::dmat4& matrix) {
     }
 }
 
-void MovingSurface::write_matrices(const scenes::Pose& pose) {
+void MovingSurface::Impl::write_matrices(const scenes::Pose& pose) {
     for (std::size_t i = 0; i < items_.size(); ++i) {
         const MovingItem& item = items_[i];
         if (item.skinned) continue;  // its vertices go straight to the world
@@ -86,7 +125,7 @@ void MovingSurface::write_matrices(const scenes::Pose& pose) {
     matrix_buffer_.write(0, matrices_.data(), matrices_.size() * sizeof(double));
 }
 
-bool MovingSurface::deform(const scenes::Pose& pose) {
+bool MovingSurface::Impl::deform(const scenes::Pose& pose) {
     for (const MovingChunk& chunk : chunks_)
         if (chunk.most_turns() > DEFORM_TURNS) return false;
     write_matrices(pose);
@@ -108,7 +147,7 @@ bool MovingSurface::deform(const scenes::Pose& pose) {
     return true;
 }
 
-bool MovingSurface::any_far_triangle(std::size_t chunk) {
+bool MovingSurface::Impl::any_far_triangle(std::size_t chunk) {
     on_gpu_.bind(chunk);
     chunks_[chunk].bind_frame();
     find_far_.set("count", on_gpu_.chunks[chunk].triangle_count);
@@ -118,12 +157,40 @@ bool MovingSurface::any_far_triangle(std::size_t chunk) {
     return chunks_[chunk].read_header().far_triangles > 0;
 }
 
-const GpuSurface& MovingSurface::move_to(double seconds) {
+void MovingSurface::Impl::move_to(double seconds) {
     when_.seconds = seconds;
     on_cpu_.reset();
     if (!deform(poser_.at(seconds)))
         on_cpu_ = upload(build_surface(scene_, scenes::take_snapshot(scene_, when_), grid_, options_));
+}
+
+MovingSurface::MovingSurface(const scenes::Scene& scene, const scenes::When& when, const Grid& grid,
+                             const SurfaceOptions& options, const gl::ShaderSource& shaders)
+    : impl_(std::make_unique<Impl>(scene, when, grid, options, shaders)) {}
+
+MovingSurface::MovingSurface(MovingSurface&&) noexcept = default;
+MovingSurface& MovingSurface::operator=(MovingSurface&&) noexcept = default;
+MovingSurface::~MovingSurface() = default;
+
+const GpuSurface& MovingSurface::move_to(double seconds) {
+    impl_->move_to(seconds);
     return surface();
+}
+
+const GpuSurface& MovingSurface::surface() const {
+    return impl_->on_cpu_ ? *impl_->on_cpu_ : impl_->on_gpu_;
+}
+
+bool MovingSurface::was_on_cpu() const {
+    return impl_->on_cpu_.has_value();
+}
+
+std::uint64_t MovingSurface::triangle_count() const {
+    return impl_->triangle_count_;
+}
+
+const Grid& MovingSurface::grid() const {
+    return impl_->grid_;
 }
 
 }  // namespace cairn::voxelizer

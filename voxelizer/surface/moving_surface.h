@@ -1,15 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <vector>
+#include <memory>
 
-#include "gl/program.h"
 #include "gl/shader_source.h"
-#include "scenes/pose.h"
 #include "scenes/snapshot.h"
 #include "voxelizer/grid.h"
-#include "voxelizer/surface/moving_chunk.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::voxelizer {
@@ -31,7 +27,7 @@ namespace cairn::voxelizer {
 ///
 /// A frame is built on the CPU, and uploaded as a new surface, where shaders cannot do it exactly: a triangle
 /// reaches the root cube from more than 2^24 units past it (only explicit bounds make such), or a vertex has
-/// more than DEFORM_TURNS morph targets and influences. `was_on_cpu` tells.
+/// more than 16384 morph targets and influences (DEFORM_TURNS in the shaders). `was_on_cpu` tells.
 class MovingSurface {
 public:
     /// Stands at `when.seconds`. The scene must outlive the surface; needs the current context of its
@@ -39,45 +35,25 @@ public:
     /// @throws Error  as take_snapshot, build_surface and upload do.
     MovingSurface(const scenes::Scene& scene, const scenes::When& when, const Grid& grid,
                   const SurfaceOptions& options = {}, const gl::ShaderSource& shaders = {});
+    MovingSurface(MovingSurface&&) noexcept;
+    MovingSurface& operator=(MovingSurface&&) noexcept;
+    MovingSurface(const MovingSurface&) = delete;
+    MovingSurface& operator=(const MovingSurface&) = delete;
+    ~MovingSurface();
 
     /// @return the surface at that moment; valid until the next move.
     /// @throws Error  as take_snapshot and build_surface do; the surface then stays unusable until it moves.
     const GpuSurface& move_to(double seconds);
 
     /// Where it was moved last.
-    [[nodiscard]] const GpuSurface& surface() const { return on_cpu_ ? *on_cpu_ : on_gpu_; }
-    [[nodiscard]] bool was_on_cpu() const { return on_cpu_.has_value(); }
-    [[nodiscard]] std::uint64_t triangle_count() const { return triangle_count_; }
-    [[nodiscard]] const Grid& grid() const { return grid_; }
+    [[nodiscard]] const GpuSurface& surface() const;
+    [[nodiscard]] bool was_on_cpu() const;
+    [[nodiscard]] std::uint64_t triangle_count() const;
+    [[nodiscard]] const Grid& grid() const;
 
 private:
-    /// What the snapshot said of an item that no moment changes.
-    struct MovingItem {
-        int node, instance;
-        bool skinned;
-    };
-    void add_skins(const scenes::Snapshot& snapshot);
-    void write_matrices(const scenes::Pose& pose);
-    void write_matrix(std::size_t number, const glm::dmat4& matrix);
-    /// Whether the GPU could place every vertex that matters.
-    [[nodiscard]] bool deform(const scenes::Pose& pose);
-    [[nodiscard]] bool any_far_triangle(std::size_t chunk);
-
-    const scenes::Scene& scene_;
-    scenes::When when_;
-    Grid grid_;
-    SurfaceOptions options_;
-    scenes::Poser poser_;
-    gl::Program deform_;
-    gl::Program find_far_;
-    std::vector<MovingItem> items_;
-    std::vector<std::uint32_t> first_joints_;  ///< one a skin: its first matrix; DEFORM_NONE: not in use
-    std::vector<double> matrices_;             ///< twelve numbers each
-    gl::Buffer matrix_buffer_;
-    std::vector<MovingChunk> chunks_;
-    GpuSurface on_gpu_;
-    std::optional<GpuSurface> on_cpu_;
-    std::uint64_t triangle_count_ = 0;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace cairn::voxelizer

@@ -264,6 +264,20 @@ void flatten(Surface& surface, const scenes::Scene& scene, const scenes::Snapsho
 
 }  // namespace
 
+SurfaceChunk::SurfaceChunk() = default;
+SurfaceChunk::SurfaceChunk(const SurfaceChunk&) = default;
+SurfaceChunk::SurfaceChunk(SurfaceChunk&&) noexcept = default;
+SurfaceChunk& SurfaceChunk::operator=(const SurfaceChunk&) = default;
+SurfaceChunk& SurfaceChunk::operator=(SurfaceChunk&&) noexcept = default;
+SurfaceChunk::~SurfaceChunk() = default;
+
+Surface::Surface() = default;
+Surface::Surface(const Surface&) = default;
+Surface::Surface(Surface&&) noexcept = default;
+Surface& Surface::operator=(const Surface&) = default;
+Surface& Surface::operator=(Surface&&) noexcept = default;
+Surface::~Surface() = default;
+
 glm::dmat3 normal_from_mesh(const glm::dmat4& world_from_mesh) {
     const glm::dmat3 linear(world_from_mesh);
     return glm::determinant(linear) != 0.0 ? glm::transpose(glm::inverse(linear)) : glm::dmat3(0.0);
@@ -285,7 +299,7 @@ Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapsh
         return surface;
     } catch (const std::bad_alloc&) {
         throw Error(Fault::memory, scene.name, "its triangles do not fit in memory",
-                    "voxelize a part of it (--bounds)");
+                    "voxelize a part of it (grid_over())");
     }
 }
 

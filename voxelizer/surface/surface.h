@@ -11,6 +11,13 @@
 #include "shaders/interop/surface.h"
 #include "voxelizer/grid.h"
 
+namespace cairn::interop {
+// What shaders read of a surface, laid out in shaders/interop/. Who only passes surfaces on need not see it.
+struct SurfaceTriangle;
+struct SurfaceAttributes;
+struct SurfaceMaterial;
+}  // namespace cairn::interop
+
 namespace cairn::voxelizer {
 
 /// Where a vertex of a chunk comes from.
@@ -23,13 +30,21 @@ struct SurfaceSource {
 struct SurfaceChunk {
     std::vector<std::array<std::int32_t, 3>> positions;  ///< lattice units, within [-2^24, 2^25]
     std::vector<interop::SurfaceTriangle> triangles;
-    std::vector<interop::SurfaceAttributes>
-        attributes;                      ///< one a vertex, or empty (SurfaceOptions::attributes)
-    std::vector<SurfaceSource> sources;  ///< one a vertex, or empty (SurfaceOptions::unplaced)
+    /// One per vertex, or empty (SurfaceOptions::attributes).
+    std::vector<interop::SurfaceAttributes> attributes;
+    /// One per vertex, or empty (SurfaceOptions::unplaced).
+    std::vector<SurfaceSource> sources;
+
+    SurfaceChunk();
+    SurfaceChunk(const SurfaceChunk&);
+    SurfaceChunk(SurfaceChunk&&) noexcept;
+    SurfaceChunk& operator=(const SurfaceChunk&);
+    SurfaceChunk& operator=(SurfaceChunk&&) noexcept;
+    ~SurfaceChunk();
 };
 
 /// A triangle that reaches further than 2^24 units past the root cube, whose products pass 53 bits.
-/// Only an explicit --bounds makes them; they are voxelized on the CPU, as exactly.
+/// Only a grid over given bounds (grid_over()) makes them; they are voxelized on the CPU, as exactly.
 struct FarTriangle {
     std::array<glm::i64vec3, 3> positions;
     std::array<glm::vec2, 3> texcoords;
@@ -48,18 +63,29 @@ struct Surface {
     /// Those that miss the root cube and yet lie before or behind it along an axis (SurfaceOptions::outside).
     std::vector<std::array<glm::i64vec3, 3>> outside_triangles;
     std::vector<interop::SurfaceMaterial> materials;  ///< at least one
-    std::vector<std::uint32_t> texels;  ///< RGBA8 of the images that are used, and counts of masks
+    /// RGBA8 of the images that are used, and the masks' counts of passing texels.
+    std::vector<std::uint32_t> texels;
     std::uint64_t triangle_count = 0;
-    bool has_color = false;  ///< the base colour varies: textures, vertex colours, or factors that differ
-    glm::vec3 uniform_color{1.0F};  ///< linear; the base colour everywhere, when it does not vary
-    bool has_mask =
-        false;  ///< any triangle that its mask cuts: those wholly shown or hidden are told apart here
+    /// The base colour varies: by textures, vertex colours, or factors that differ.
+    bool has_color = false;
+    /// Linear: the base colour everywhere, if it does not vary.
+    glm::vec3 uniform_color{1.0F};
+    /// There is a triangle that its alpha mask cuts, neither wholly shown nor wholly hidden.
+    bool has_mask = false;
+
+    Surface();
+    Surface(const Surface&);
+    Surface(Surface&&) noexcept;
+    Surface& operator=(const Surface&);
+    Surface& operator=(Surface&&) noexcept;
+    ~Surface();
 };
 
 struct SurfaceOptions {
-    bool attributes =
-        false;             ///< normals, colours and texture coordinates too (the brick producer needs them)
-    bool outside = false;  ///< Surface::outside_triangles too (a solid fill needs them)
+    /// SurfaceChunk::attributes too: normals, colours and texture coordinates. The brick producer needs them.
+    bool attributes = false;
+    /// Surface::outside_triangles too. A solid fill needs them.
+    bool outside = false;
     /// All triangles, wherever they are, with `sources`, and with positions and normals left 0 for another to
     /// fill in (MovingSurface).
     bool unplaced = false;

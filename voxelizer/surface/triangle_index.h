@@ -17,7 +17,7 @@ namespace cairn::voxelizer {
 /// A cube of the regular subdivision of a root cube: level l has 2^l cells across it.
 struct Cell {
     int level = 0;           ///< at most MAX_CELL_LEVEL
-    glm::ivec3 position{0};  ///< in cells of its level
+    glm::ivec3 position{0};  ///< in units of its level's cells
 
     [[nodiscard]] bool operator==(const Cell&) const = default;
 };
@@ -29,7 +29,7 @@ struct TriangleIndexOptions {
     /// A cell's list also holds what comes as near as 2^-border_shift of the cell's side. None: no border.
     std::optional<int> border_shift;
     /// Numbers held (4 bytes each) before the lists are made anew, which costs time, never correctness. None:
-    /// 8 million, or four a triangle where that is more.
+    /// 8 million, or four per triangle if that is more.
     std::optional<std::size_t> held_limit;
 };
 
@@ -38,7 +38,7 @@ struct TriangleIndexOptions {
 /// bounding boxes of the triangles decide.
 class TriangleIndex {
 public:
-    /// Keeps a copy of what it needs of the surface: a bounding box a triangle.
+    /// Keeps a copy of what it needs of the surface: a bounding box per triangle.
     explicit TriangleIndex(const Surface& surface, const TriangleIndexOptions& options = {});
 
     struct Box {

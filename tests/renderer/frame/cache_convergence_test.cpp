@@ -10,14 +10,15 @@
 #include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
 using renderer::BatchPace;
+using renderer::Milliseconds;
 using renderer::Renderer;
-using renderer::TreeOptions;
 using renderer::View;
 
 /// What a refinement took until it came to rest.
@@ -36,9 +37,9 @@ Course refine(Renderer& renderer, const View& view) {
     app::Refinement refinement(view);
     Course course;
     for (; !refinement.settled() && course.steps < most_steps; ++course.steps) {
-        refinement.step(renderer, pace);
-        course.produced += renderer.statistics().bricks_produced;
-        course.evicted += renderer.statistics().bricks_evicted;
+        const renderer::FrameStatistics step = refinement.step(renderer, pace);
+        course.produced += step.bricks_produced;
+        course.evicted += step.bricks_evicted;
     }
     course.settled = refinement.settled();
     course.converged = refinement.converged();
@@ -49,35 +50,35 @@ Course refine(Renderer& renderer, const View& view) {
 class CacheConvergence : public GlTest {
 protected:
     CacheConvergence() : scene_(scenes::make_builtin("knot")) {
-        view_.width = 128;
-        view_.height = 96;
-        view_.pixel_error = 0.4;
+        view_.size.width = 128;
+        view_.size.height = 96;
+        view_.detail.pixel_error = 0.4;
         view_.camera = optics::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0);
         behind_ = view_;
         behind_.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
     }
 
-    [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
-        return Renderer(scene_, scenes::take_snapshot(scene_), options);
+    [[nodiscard]] Renderer make(const Settings& options = {}) const {
+        return voxel_renderer(scene_, scenes::take_snapshot(scene_), options);
     }
     /// A renderer whose pool holds a share of what a view needs, and is full with bricks of other views.
     [[nodiscard]] Renderer full(std::uint64_t needed, double share) const {
-        TreeOptions options;
-        options.brick_pool_bytes = std::size_t(double(needed) * share) * slot_bytes;
+        Settings options;
+        options.pools.brick_bytes = std::size_t(double(needed) * share) * slot_bytes;
         Renderer renderer = make(options);
         View near_view = view_;
         near_view.camera.eye = glm::mix(view_.camera.target, view_.camera.eye, 0.7);
         (void)renderer.render(near_view);
         near_view.camera.eye.x = 2.0 * view_.camera.target.x - near_view.camera.eye.x;
         (void)renderer.render(near_view);
-        (void)renderer.render(view_);
-        EXPECT_EQ(renderer.statistics().bricks_resident, renderer.statistics().brick_slots);
+        const renderer::Frame frame = renderer.render(view_);
+        EXPECT_EQ(frame.statistics.bricks_resident, frame.statistics.brick_slots);
         return renderer;
     }
     [[nodiscard]] std::uint64_t need_of(const View& view) const {
         Renderer fresh = make();
-        (void)fresh.render(view);
-        return fresh.statistics().bricks_produced;
+        const renderer::Frame fresh_frame = fresh.render(view);
+        return fresh_frame.statistics.bricks_produced;
     }
 
     static constexpr std::size_t slot_bytes = 18 * 18 * 18 * 5 + 65 * 8;  // the knot has one colour
@@ -93,7 +94,7 @@ TEST_F(CacheConvergence, PoolThatHoldsTheViewIsRefinedWithoutProducingTwice) {
     fmt::print("{} bricks of {}, {} steps\n", course.produced, needed, course.steps);
     EXPECT_TRUE(course.converged);
     EXPECT_LE(course.produced, needed + needed / 8);
-    EXPECT_EQ(course.image.rgba, make().render(behind_).rgba);
+    EXPECT_EQ(course.image.rgba, make().render(behind_).image.rgba);
 }
 
 TEST_F(CacheConvergence, PoolThatHoldsOnlyBandsConvergesBandByBand) {
@@ -104,7 +105,7 @@ TEST_F(CacheConvergence, PoolThatHoldsOnlyBandsConvergesBandByBand) {
                course.steps);
     EXPECT_TRUE(course.converged);
     EXPECT_LE(course.produced, needed * 3 / 2) << "bands evict each other's bricks";
-    EXPECT_EQ(course.image.rgba, make().render(behind_).rgba);
+    EXPECT_EQ(course.image.rgba, make().render(behind_).image.rgba);
 }
 
 TEST_F(CacheConvergence, PoolThatHoldsNoBandComesToRest) {
@@ -118,15 +119,19 @@ TEST_F(CacheConvergence, PoolThatHoldsNoBandComesToRest) {
     // Once it is at rest, more visits change nothing.
     int idle = 0;
     for (int visit = 0; visit < 400 && idle < 3; ++visit) {
-        (void)renderer.render_rows_within(behind_, {40, 24}, 0.0);
-        idle = renderer.statistics().bricks_produced == 0 ? idle + 1 : 0;
+        const renderer::Frame frame =
+            renderer.render(behind_, {.rows = renderer::Rows{40, 24}, .budget = Milliseconds(0.0)});
+        idle = frame.statistics.bricks_produced == 0 ? idle + 1 : 0;
     }
-    const optics::Image at_rest = renderer.render_rows_within(behind_, {40, 24}, 0.0);
+    const optics::Image at_rest =
+        renderer.render(behind_, {.rows = renderer::Rows{40, 24}, .budget = Milliseconds(0.0)}).image;
     for (int visit = 0; visit < 5; ++visit) {
-        EXPECT_EQ(renderer.render_rows_within(behind_, {40, 24}, 0.0).rgba, at_rest.rgba) << visit;
-        EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << visit;
+        const renderer::Frame last =
+            renderer.render(behind_, {.rows = renderer::Rows{40, 24}, .budget = Milliseconds(0.0)});
+        EXPECT_EQ(last.image.rgba, at_rest.rgba) << visit;
+        EXPECT_EQ(last.statistics.bricks_produced, 0U) << visit;
     }
-    EXPECT_EQ(renderer.render(behind_).rgba, make().render(behind_).rgba);
+    EXPECT_EQ(renderer.render(behind_).image.rgba, make().render(behind_).image.rgba);
 }
 
 /// What answering costs, for a clock that only these tests move.

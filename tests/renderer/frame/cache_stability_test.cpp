@@ -15,6 +15,7 @@
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
@@ -22,9 +23,9 @@ namespace {
 using optics::Image;
 using renderer::BrickCache;
 using renderer::BrickPool;
+using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::Tile;
-using renderer::TreeOptions;
 using renderer::View;
 
 // --- bricks in main memory ---
@@ -129,7 +130,7 @@ TEST_P(BrickCacheTest, KeepsWithinItsBytesWhatWasUsedLast) {
     }
     EXPECT_TRUE(cache.restore(tile(99), 0));
     EXPECT_FALSE(cache.restore(tile(1), 0)) << "not used for longest";
-    EXPECT_GE(cache.brick_count(), 8U);
+    EXPECT_GT(cache.size_bytes(), 8 * slot_bytes(GetParam()));
     EXPECT_THROW(BrickCache(pool, 100), Error);
 }
 
@@ -141,24 +142,24 @@ INSTANTIATE_TEST_SUITE_P(Color, BrickCacheTest, ::testing::Bool(),
 class CacheStability : public GlTest {
 protected:
     CacheStability() : scene_(scenes::make_builtin("knot")), snapshot_(scenes::take_snapshot(scene_)) {
-        view_.width = 96;
-        view_.height = 72;
-        view_.pixel_error = 0.15;
+        view_.size.width = 96;
+        view_.size.height = 72;
+        view_.detail.pixel_error = 0.15;
         view_.camera = optics::framing_camera(snapshot_.bounds, 4.0 / 3.0);
         behind_ = view_;
         behind_.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
     }
-    [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
-        return Renderer(scene_, snapshot_, options);
+    [[nodiscard]] Renderer make(const Settings& options = {}) const {
+        return voxel_renderer(scene_, snapshot_, options);
     }
     /// A pool of a share of the bricks that the view needs, and as few nodes as can be.
-    [[nodiscard]] TreeOptions share_of(double share, const View& view) const {
+    [[nodiscard]] Settings share_of(double share, const View& view) const {
         Renderer fresh = make();
-        (void)fresh.render(view);
-        TreeOptions options;
-        options.brick_pool_bytes =
-            std::size_t(std::max(1.0, double(fresh.statistics().bricks_produced) * share)) * slot_bytes;
-        options.node_pool_bytes = std::size_t(8) * 64 * 16;
+        const renderer::Frame frame = fresh.render(view);
+        Settings options;
+        options.pools.brick_bytes =
+            std::size_t(std::max(1.0, double(frame.statistics.bricks_produced) * share)) * slot_bytes;
+        options.pools.node_bytes = std::size_t(8) * 64 * 16;
         return options;
     }
 
@@ -170,129 +171,140 @@ protected:
 };
 
 TEST_F(CacheStability, PoolsOfATwentiethOfTheViewEndWithTheSamePicture) {
-    const optics::Image expected = make().render(view_);
-    TreeOptions options = share_of(0.05, view_);
+    const optics::Image expected = make().render(view_).image;
+    Settings options = share_of(0.05, view_);
     for (const std::size_t cache_bytes : {std::size_t(0), std::size_t(1) << 20U, std::size_t(64) << 20U}) {
-        options.brick_cache_bytes = cache_bytes;
+        options.pools.cache_bytes = cache_bytes;
         Renderer tight = make(options);
-        EXPECT_EQ(tight.render(view_).rgba, expected.rgba) << cache_bytes;
-        EXPECT_GT(tight.statistics().bricks_evicted, 0U);
-        (void)tight.render_within(behind_, 0.0);
-        EXPECT_EQ(tight.render(view_).rgba, expected.rgba) << cache_bytes << ", after another view";
-        EXPECT_LE(tight.statistics().brick_cache_bytes, cache_bytes);
+        const renderer::Frame frame = tight.render(view_);
+        EXPECT_EQ(frame.image.rgba, expected.rgba) << cache_bytes;
+        EXPECT_GT(frame.statistics.bricks_evicted, 0U);
+        (void)tight.render(behind_, {.budget = Milliseconds(0.0)});
+        const renderer::Frame tight_frame = tight.render(view_);
+        EXPECT_EQ(tight_frame.image.rgba, expected.rgba) << cache_bytes << ", after another view";
+        EXPECT_LE(tight_frame.statistics.brick_cache_bytes, cache_bytes);
     }
 }
 
 TEST_F(CacheStability, CachedBricksAreRestoredInsteadOfProduced) {
-    TreeOptions options;
-    options.brick_pool_bytes = 40 * slot_bytes;
-    options.brick_cache_bytes = std::size_t(256) << 20U;
+    Settings options;
+    options.pools.brick_bytes = 40 * slot_bytes;
+    options.pools.cache_bytes = std::size_t(256) << 20U;
     Renderer renderer = make(options);
-    const optics::Image first = renderer.render(view_);
-    EXPECT_GT(renderer.statistics().bricks_cached, 0U);
-    EXPECT_GT(renderer.statistics().brick_cache_bytes, 0U);
+    const renderer::Frame first = renderer.render(view_);
+    EXPECT_GT(first.statistics.bricks_cached, 0U);
+    EXPECT_GT(first.statistics.brick_cache_bytes, 0U);
     renderer.forget_picture();
-    const optics::Image second = renderer.render(view_);
-    EXPECT_EQ(second.rgba, first.rgba);
-    EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << "all of them were in main memory";
-    EXPECT_GT(renderer.statistics().bricks_restored, 100U);
-    EXPECT_EQ(first.rgba, make().render(view_).rgba);
+    const renderer::Frame second = renderer.render(view_);
+    EXPECT_EQ(second.image.rgba, first.image.rgba);
+    EXPECT_EQ(second.statistics.bricks_produced, 0U) << "all of them were in main memory";
+    EXPECT_GT(second.statistics.bricks_restored, 100U);
+    EXPECT_EQ(first.image.rgba, make().render(view_).image.rgba);
 }
 
 TEST_F(CacheStability, BricksOfEvictedNodesAreLinkedAgain) {
-    TreeOptions options;
-    options.node_pool_bytes = std::size_t(8) * 64 * 16;
+    Settings options;
+    options.pools.node_bytes = std::size_t(8) * 64 * 16;
     Renderer renderer = make(options);
-    const optics::Image first = renderer.render(view_);
-    EXPECT_GT(renderer.statistics().nodes_evicted, 0U);
+    const renderer::Frame first = renderer.render(view_);
+    EXPECT_GT(first.statistics.nodes_evicted, 0U);
     renderer.forget_picture();
-    EXPECT_EQ(renderer.render(view_).rgba, first.rgba);
-    EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << "all of them were in the pool";
-    EXPECT_GT(renderer.statistics().bricks_relinked, 0U);
-    EXPECT_EQ(first.rgba, make().render(view_).rgba);
+    const renderer::Frame frame = renderer.render(view_);
+    EXPECT_EQ(frame.image.rgba, first.image.rgba);
+    EXPECT_EQ(frame.statistics.bricks_produced, 0U) << "all of them were in the pool";
+    EXPECT_GT(frame.statistics.bricks_relinked, 0U);
+    EXPECT_EQ(first.image.rgba, make().render(view_).image.rgba);
 }
 
 TEST_F(CacheStability, StaticCameraMarchesNothing) {
     Renderer renderer = make();
-    const optics::Image first = renderer.render(view_);
-    EXPECT_GT(renderer.statistics().passes, 0);
-    const auto expect_known = [&](const optics::Image& image, const char* what) {
-        EXPECT_EQ(image.rgba, first.rgba) << what;
-        EXPECT_EQ(renderer.statistics().passes, 0) << what;
-        EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << what;
-        EXPECT_TRUE(renderer.statistics().converged) << what;
-        EXPECT_GT(renderer.statistics().bricks_resident, 0U) << what;
+    const renderer::Frame first = renderer.render(view_);
+    EXPECT_GT(first.statistics.passes, 0);
+    const auto expect_known = [&](const renderer::Frame& known, const char* what) {
+        EXPECT_EQ(known.image.rgba, first.image.rgba) << what;
+        EXPECT_EQ(known.statistics.passes, 0) << what;
+        EXPECT_EQ(known.statistics.bricks_produced, 0U) << what;
+        EXPECT_TRUE(known.statistics.converged) << what;
+        EXPECT_GT(known.statistics.bricks_resident, 0U) << what;
     };
     expect_known(renderer.render(view_), "the same view");
-    expect_known(renderer.render_within(view_, 0.0), "within a budget");
-    expect_known(renderer.render_rows(view_, {0, view_.height}), "all rows");
-    const optics::Image rows = renderer.render_rows_within(view_, {30, 9}, 0.0);
-    EXPECT_EQ(renderer.statistics().passes, 0);
-    EXPECT_EQ(rows.height, 9);
-    EXPECT_TRUE(std::equal(rows.rgba.begin(), rows.rgba.end(), first.rgba.begin() + 30 * view_.width * 4));
+    expect_known(renderer.render(view_, {.budget = Milliseconds(0.0)}), "within a budget");
+    expect_known(renderer.render(view_, {.rows = renderer::Rows{0, view_.size.height}}), "all rows");
+    const renderer::Frame rows =
+        renderer.render(view_, {.rows = renderer::Rows{30, 9}, .budget = Milliseconds(0.0)});
+    EXPECT_EQ(rows.statistics.passes, 0);
+    EXPECT_EQ(rows.image.height, 9);
+    EXPECT_TRUE(std::equal(rows.image.rgba.begin(), rows.image.rgba.end(),
+                           first.image.rgba.begin() + 30 * view_.size.width * 4));
 
     View changed = view_;
     changed.light.ambient = 0.5F;
-    EXPECT_EQ(renderer.render(changed).rgba, make().render(changed).rgba);
-    EXPECT_GT(renderer.statistics().passes, 0) << "the light changed";
+    const renderer::Frame frame = renderer.render(changed);
+    EXPECT_EQ(frame.image.rgba, make().render(changed).image.rgba);
+    EXPECT_GT(frame.statistics.passes, 0) << "the light changed";
     // Some rows of a picture do not make the whole of it known.
-    (void)renderer.render_rows(view_, {0, 40});
-    EXPECT_EQ(renderer.render(view_).rgba, first.rgba);
-    EXPECT_GT(renderer.statistics().passes, 0);
+    (void)renderer.render(view_, {.rows = renderer::Rows{0, 40}});
+    const renderer::Frame last = renderer.render(view_);
+    EXPECT_EQ(last.image.rgba, first.image.rgba);
+    EXPECT_GT(last.statistics.passes, 0);
     renderer.forget_picture();
-    EXPECT_EQ(renderer.render(view_).rgba, first.rgba);
-    EXPECT_GT(renderer.statistics().passes, 0);
+    const renderer::Frame again = renderer.render(view_);
+    EXPECT_EQ(again.image.rgba, first.image.rgba);
+    EXPECT_GT(again.statistics.passes, 0);
 }
 
 TEST_F(CacheStability, UnfinishedPictureIsNotKept) {
     Renderer renderer = make();
-    (void)renderer.render_within(view_, 0.0);
-    ASSERT_FALSE(renderer.statistics().converged);
-    EXPECT_EQ(renderer.render(view_).rgba, make().render(view_).rgba);
-    EXPECT_GT(renderer.statistics().passes, 0);
+    const renderer::Frame frame = renderer.render(view_, {.budget = Milliseconds(0.0)});
+    ASSERT_FALSE(frame.statistics.converged);
+    const renderer::Frame last = renderer.render(view_);
+    EXPECT_EQ(last.image.rgba, make().render(view_).image.rgba);
+    EXPECT_GT(last.statistics.passes, 0);
 }
 
 TEST_F(CacheStability, EmptyScenesBackgroundIsThatOfOthers) {
     scenes::Scene nothing;
     nothing.scenes.resize(1);
-    Renderer empty(nothing, scenes::take_snapshot(nothing));
+    Renderer empty = voxel_renderer(nothing, scenes::take_snapshot(nothing));
     Renderer knot = make();
     View away = view_;
     away.camera.target = 2.0 * away.camera.eye - away.camera.target;
     for (int i = 0; i < 20; ++i) {
         away.background = glm::vec3(float(i) / 16.0F, 0.003F * float(i), 1.0F - 0.045F * float(i));
-        const optics::Image ours = empty.render(away);
-        const optics::Image marched = knot.render(away);
-        EXPECT_EQ(empty.statistics().passes, 0);
-        EXPECT_GT(knot.statistics().passes, 0);
+        const renderer::Frame ours = empty.render(away);
+        const renderer::Frame marched = knot.render(away);
+        EXPECT_EQ(ours.statistics.passes, 0);
+        EXPECT_GT(marched.statistics.passes, 0);
         for (std::size_t k = 0; k < 4; ++k)
-            EXPECT_LE(std::abs(int(ours.rgba[k]) - int(marched.rgba[k])), 1) << i << ", channel " << k;
-        EXPECT_EQ(ours.rgba.size(), marched.rgba.size());
+            EXPECT_LE(std::abs(int(ours.image.rgba[k]) - int(marched.image.rgba[k])), 1)
+                << i << ", channel " << k;
+        EXPECT_EQ(ours.image.rgba.size(), marched.image.rgba.size());
     }
 }
 
 TEST_F(CacheStability, MoreQuestionsThanThereIsRoomForAreAskedAgain) {
-    const optics::Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_).image;
     for (const int capacity : {3, 65536}) {
-        TreeOptions options;
-        options.query_capacity = capacity;
+        Settings options;
+        options.march.query_capacity = capacity;
         Renderer renderer = make(options);
-        EXPECT_EQ(renderer.render(view_).rgba, expected.rgba) << capacity;
+        const renderer::Frame frame = renderer.render(view_);
+        EXPECT_EQ(frame.image.rgba, expected.rgba) << capacity;
         if (capacity == 3) {
             // One more a pass, because the most urgent of those without room is known.
-            EXPECT_GE(std::uint64_t(renderer.statistics().passes) * 4, renderer.statistics().bricks_produced)
+            EXPECT_GE(std::uint64_t(frame.statistics.passes) * 4, frame.statistics.bricks_produced)
                 << "a pass asked for more";
         }
     }
     for (const int wrong : {0, -1, 65537})
-        EXPECT_THROW((void)make({.query_capacity = wrong}), Error) << wrong;
+        EXPECT_THROW((void)make({.march = {.query_capacity = wrong}}), Error) << wrong;
 }
 
 TEST_F(CacheStability, PrefetchedBricksAreFoundByTheNextFrames) {
     constexpr int frames = 8;
     auto camera_at = [&](int frame) {
         View view = view_;
-        view.pixel_error = 0.5;
+        view.detail.pixel_error = 0.5;
         view.camera.eye = glm::mix(view_.camera.eye, view_.camera.target, 0.07 * frame);
         return view;
     };
@@ -301,18 +313,19 @@ TEST_F(CacheStability, PrefetchedBricksAreFoundByTheNextFrames) {
     std::uint64_t produced = 0;
     std::uint64_t produced_late = 0;
     std::uint64_t prefetched = 0;
-    (void)plain.render_within(camera_at(0), 1e9);
-    (void)ahead.render_within(camera_at(0), 1e9);
+    (void)plain.render(camera_at(0), {.budget = Milliseconds(1e9)});
+    (void)ahead.render(camera_at(0), {.budget = Milliseconds(1e9)});
     for (int frame = 1; frame < frames; ++frame) {
         View next = camera_at(frame);
         if (frame > 1)
             next.camera = optics::extrapolated(camera_at(frame - 2).camera, camera_at(frame - 1).camera);
-        const std::uint64_t done = ahead.prefetch(next, 1e6);
-        const optics::Image expected = plain.render_within(camera_at(frame), 1e9);
-        produced += plain.statistics().bricks_produced;
-        EXPECT_EQ(ahead.render_within(camera_at(frame), 1e9).rgba, expected.rgba) << "frame " << frame;
-        produced_late += ahead.statistics().bricks_produced;
-        EXPECT_EQ(ahead.statistics().bricks_prefetched, done);
+        const std::uint64_t done = ahead.prefetch(next, Milliseconds(1e6));
+        const renderer::Frame expected = plain.render(camera_at(frame), {.budget = Milliseconds(1e9)});
+        produced += expected.statistics.bricks_produced;
+        const renderer::Frame ahead_frame = ahead.render(camera_at(frame), {.budget = Milliseconds(1e9)});
+        EXPECT_EQ(ahead_frame.image.rgba, expected.image.rgba) << "frame " << frame;
+        produced_late += ahead_frame.statistics.bricks_produced;
+        EXPECT_EQ(ahead_frame.statistics.bricks_prefetched, done);
         prefetched += done;
     }
     fmt::print("{} bricks produced in frames without, {} with prefetching, {} ahead\n", produced,
@@ -322,19 +335,20 @@ TEST_F(CacheStability, PrefetchedBricksAreFoundByTheNextFrames) {
 }
 
 TEST_F(CacheStability, PrefetchTakesNothingFromTheFrameBeforeIt) {
-    TreeOptions options;
+    Settings options;
     Renderer fresh = make();
-    (void)fresh.render_within(view_, 1e9);
-    options.brick_pool_bytes = (fresh.statistics().bricks_resident + 30) * slot_bytes;
+    const renderer::Frame frame = fresh.render(view_, {.budget = Milliseconds(1e9)});
+    options.pools.brick_bytes = (frame.statistics.bricks_resident + 30) * slot_bytes;
     Renderer renderer = make(options);
-    const optics::Image before = renderer.render_within(view_, 1e9);
-    ASSERT_TRUE(renderer.statistics().converged);
-    (void)renderer.prefetch(behind_, 1e6);
+    const renderer::Frame before = renderer.render(view_, {.budget = Milliseconds(1e9)});
+    ASSERT_TRUE(before.statistics.converged);
+    (void)renderer.prefetch(behind_, Milliseconds(1e6));
     renderer.forget_picture();
-    EXPECT_EQ(renderer.render_within(view_, 1e9).rgba, before.rgba);
-    EXPECT_EQ(renderer.statistics().bricks_produced, 0U);
-    EXPECT_EQ(renderer.prefetch(behind_, 0.0), 0U) << "there was no time";
-    EXPECT_THROW((void)renderer.prefetch(behind_, -1.0), Error);
+    const renderer::Frame last = renderer.render(view_, {.budget = Milliseconds(1e9)});
+    EXPECT_EQ(last.image.rgba, before.image.rgba);
+    EXPECT_EQ(last.statistics.bricks_produced, 0U);
+    EXPECT_EQ(renderer.prefetch(behind_, Milliseconds(0.0)), 0U) << "there was no time";
+    EXPECT_THROW((void)renderer.prefetch(behind_, Milliseconds(-1.0)), Error);
 }
 
 std::size_t resident_bytes() {
@@ -374,13 +388,13 @@ TEST_F(CacheStability, TenThousandFramesOfRandomFlightLeaveNothingBehind) {
     const scenes::Scene scene = ball_over_floor();
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     View view;
-    view.width = 16;
-    view.height = 12;
-    TreeOptions options{.max_resolution = 1024};
-    options.brick_pool_bytes = 24 * slot_bytes;
-    options.node_pool_bytes = std::size_t(12) * 64 * 16;
-    options.brick_cache_bytes = std::size_t(2) << 20U;
-    Renderer renderer(scene, snapshot, options);
+    view.size.width = 16;
+    view.size.height = 12;
+    Settings options{.tree = {.max_resolution = 1024}};
+    options.pools.brick_bytes = 24 * slot_bytes;
+    options.pools.node_bytes = std::size_t(12) * 64 * 16;
+    options.pools.cache_bytes = std::size_t(2) << 20U;
+    Renderer renderer = voxel_renderer(scene, snapshot, options);
     Random random(77);
     std::size_t objects = 0;
     std::size_t bytes = 0;
@@ -388,13 +402,12 @@ TEST_F(CacheStability, TenThousandFramesOfRandomFlightLeaveNothingBehind) {
     for (int frame = 0; frame < frames; ++frame) {
         SCOPED_TRACE(fmt::format("seed 77, frame {}", frame));
         const View next = random_view(view, snapshot.bounds, random);
-        if (frame % 5 == 0) {
-            (void)renderer.render(next);
-        } else {
-            (void)renderer.render_within(next, 0.0);
-        }
-        evicted += renderer.statistics().bricks_evicted;
-        ASSERT_LE(renderer.statistics().brick_cache_bytes, options.brick_cache_bytes);
+        const renderer::Request patient;
+        const renderer::Request hasty{.budget = Milliseconds(0.0)};
+        const renderer::FrameStatistics statistics =
+            renderer.render(next, frame % 5 == 0 ? patient : hasty).statistics;
+        evicted += statistics.bricks_evicted;
+        ASSERT_LE(statistics.brick_cache_bytes, options.pools.cache_bytes);
         if (frame != warm_up) continue;
         objects = gl_objects();
         bytes = resident_bytes();
@@ -403,8 +416,8 @@ TEST_F(CacheStability, TenThousandFramesOfRandomFlightLeaveNothingBehind) {
     EXPECT_EQ(gl_objects(), objects);
     EXPECT_LE(resident_bytes(), bytes + most_growth);
     const View last = random_view(view, snapshot.bounds, random);
-    EXPECT_EQ(renderer.render(last).rgba,
-              Renderer(scene, snapshot, {.max_resolution = 1024}).render(last).rgba);
+    EXPECT_EQ(renderer.render(last).image.rgba,
+              voxel_renderer(scene, snapshot, {.tree = {.max_resolution = 1024}}).render(last).image.rgba);
 }
 
 TEST_F(CacheStability, SizesMayChangeWithEveryFrame) {
@@ -413,16 +426,17 @@ TEST_F(CacheStability, SizesMayChangeWithEveryFrame) {
     Random random(5);
     for (int frame = 0; frame < 40; ++frame) {
         View view = view_;
-        view.pixel_error = 1.0;
-        view.width = int(random.between(1, 150));
-        view.height = int(random.between(1, 150));
-        const optics::Image ours =
-            frame % 3 == 0 ? renderer.render(view) : renderer.render_within(view, frame % 3 == 1 ? 0.0 : 1e9);
-        EXPECT_EQ(ours.rgba.size(), std::size_t(view.width) * std::size_t(view.height) * 4);
-        if (!renderer.statistics().converged) continue;
+        view.detail.pixel_error = 1.0;
+        view.size.width = int(random.between(1, 150));
+        view.size.height = int(random.between(1, 150));
+        const renderer::Frame ours =
+            frame % 3 == 0 ? renderer.render(view)
+                           : renderer.render(view, {.budget = Milliseconds(frame % 3 == 1 ? 0.0 : 1e9)});
+        EXPECT_EQ(ours.image.rgba.size(), std::size_t(view.size.width) * std::size_t(view.size.height) * 4);
+        if (!ours.statistics.converged) continue;
         fresh.forget_picture();
-        EXPECT_EQ(ours.rgba, fresh.render(view).rgba)
-            << "seed 5, frame " << frame << ": " << view.width << " x " << view.height;
+        EXPECT_EQ(ours.image.rgba, fresh.render(view).image.rgba)
+            << "seed 5, frame " << frame << ": " << view.size.width << " x " << view.size.height;
     }
 }
 

@@ -9,33 +9,34 @@
 #include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
+using renderer::Milliseconds;
 using renderer::Renderer;
-using renderer::TreeOptions;
 using renderer::View;
 
 class PrefetchFiner : public GlTest {
 protected:
     PrefetchFiner() : scene_(scenes::make_builtin("knot")) {
-        view_.width = 96;
-        view_.height = 72;
+        view_.size.width = 96;
+        view_.size.height = 72;
         view_.camera = app::snapped(optics::framing_camera(scenes::take_snapshot(scene_).bounds, 4.0 / 3.0));
         near_ = view_;
         near_.camera.eye = glm::mix(view_.camera.target, view_.camera.eye, 0.5);
     }
-    [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
-        return Renderer(scene_, scenes::take_snapshot(scene_), options);
+    [[nodiscard]] Renderer make(const Settings& options = {}) const {
+        return voxel_renderer(scene_, scenes::take_snapshot(scene_), options);
     }
     /// A pool for what the view needs, and so many more.
-    [[nodiscard]] TreeOptions room_for(std::uint64_t more) const {
+    [[nodiscard]] Settings room_for(std::uint64_t more) const {
         Renderer fresh = make();
-        (void)fresh.render(view_);
-        TreeOptions options;
-        options.brick_pool_bytes = (fresh.statistics().bricks_resident + more) * slot_bytes;
+        const renderer::Frame frame = fresh.render(view_);
+        Settings options;
+        options.pools.brick_bytes = (frame.statistics.bricks_resident + more) * slot_bytes;
         return options;
     }
     /// @return the bricks that were produced; `calls` counts how often it was asked.
@@ -43,7 +44,7 @@ protected:
         constexpr int most_calls = 20000;
         std::uint64_t bricks = 0;
         for (calls = 1; calls < most_calls; ++calls) {
-            const renderer::Prefetched done = renderer.prefetch_finer(budget_ms);
+            const renderer::Prefetched done = renderer.prefetch_finer(Milliseconds(budget_ms));
             bricks += done.bricks;
             if (!done.more) return bricks;
         }
@@ -59,25 +60,23 @@ protected:
 
 TEST_F(PrefetchFiner, ApproachFindsItsBricks) {
     Renderer plain = make();
-    (void)plain.render_within(view_, 1e9);
-    const optics::Image expected = plain.render_within(near_, 1e9);
-    const std::uint64_t late = plain.statistics().bricks_produced;
+    (void)plain.render(view_, {.budget = Milliseconds(1e9)});
+    const renderer::Frame expected = plain.render(near_, {.budget = Milliseconds(1e9)});
+    const std::uint64_t late = expected.statistics.bricks_produced;
     ASSERT_GT(late, 50U) << "nothing finer is to be seen";
 
     for (const double budget_ms : {1e9, 1e-3}) {
         Renderer ahead = make();
-        EXPECT_FALSE(ahead.prefetch_finer(1e9).more) << "nothing has been rendered";
-        (void)ahead.render_within(view_, 1e9);
-        const renderer::FrameStatistics of_frame = ahead.statistics();
+        EXPECT_FALSE(ahead.prefetch_finer(Milliseconds(1e9)).more) << "nothing has been rendered";
+        (void)ahead.render(view_, {.budget = Milliseconds(1e9)});
         int calls = 0;
         const std::uint64_t prefetched = prefetch_all(ahead, budget_ms, calls);
-        EXPECT_EQ(ahead.statistics().passes, of_frame.passes) << "counters are the frame's";
-        EXPECT_EQ(ahead.statistics().bricks_produced, of_frame.bricks_produced);
-        EXPECT_EQ(ahead.render_within(near_, 1e9).rgba, expected.rgba);
+        const renderer::Frame last = ahead.render(near_, {.budget = Milliseconds(1e9)});
+        EXPECT_EQ(last.image.rgba, expected.image.rgba);
         fmt::print("{} bricks produced without, {} with, {} ahead in {} calls\n", late,
-                   ahead.statistics().bricks_produced, prefetched, calls);
-        EXPECT_EQ(ahead.statistics().bricks_prefetched, prefetched);
-        EXPECT_LE(ahead.statistics().bricks_produced * 4, late);
+                   last.statistics.bricks_produced, prefetched, calls);
+        EXPECT_EQ(last.statistics.bricks_prefetched, prefetched);
+        EXPECT_LE(last.statistics.bricks_produced * 4, late);
     }
 }
 
@@ -89,30 +88,33 @@ TEST_F(PrefetchFiner, StopsWhenThePoolIsFullAndTakesNothingFromTheView) {
     (void)renderer.render(behind);  // whose bricks may go
     optics::Image before;
     // In bands, as the viewer does it: what any of them used stays.
-    for (int row = 0; row < view_.height; row += 24) {
-        (void)renderer.render_rows_within(view_, {row, 24}, 1e9);
-        ASSERT_TRUE(renderer.statistics().converged);
+    for (int row = 0; row < view_.size.height; row += 24) {
+        const renderer::Frame frame =
+            renderer.render(view_, {.rows = renderer::Rows{row, 24}, .budget = Milliseconds(1e9)});
+        ASSERT_TRUE(frame.statistics.converged);
     }
     int calls = 0;
     const std::uint64_t prefetched = prefetch_all(renderer, 5.0, calls);
     EXPECT_GE(prefetched, more / 2);
     EXPECT_LE(prefetched, more + 1);
-    EXPECT_EQ(renderer.prefetch_finer(1e9).bricks, 0U) << "it does not rest";
+    EXPECT_EQ(renderer.prefetch_finer(Milliseconds(1e9)).bricks, 0U) << "it does not rest";
     renderer.forget_picture();
-    EXPECT_EQ(renderer.render_within(view_, 1e9).rgba, make().render(view_).rgba);
-    EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << "the view lost bricks";
-    EXPECT_EQ(renderer.statistics().bricks_resident, renderer.statistics().brick_slots);
+    const renderer::Frame last = renderer.render(view_, {.budget = Milliseconds(1e9)});
+    EXPECT_EQ(last.image.rgba, make().render(view_).image.rgba);
+    EXPECT_EQ(last.statistics.bricks_produced, 0U) << "the view lost bricks";
+    EXPECT_EQ(last.statistics.bricks_resident, last.statistics.brick_slots);
 }
 
 TEST_F(PrefetchFiner, NothingIsProducedWithoutTimeOrForWhatIsFineEnough) {
     Renderer renderer = make();
     (void)renderer.render(view_);
-    EXPECT_EQ(renderer.prefetch_finer(0.0).bricks, 0U);
-    EXPECT_THROW((void)renderer.prefetch_finer(-1.0), Error);
-    Renderer coarse = make({.max_resolution = 64});  // whose finest voxels the view shows already
+    EXPECT_EQ(renderer.prefetch_finer(Milliseconds(0.0)).bricks, 0U);
+    EXPECT_THROW((void)renderer.prefetch_finer(Milliseconds(-1.0)), Error);
+    Renderer coarse = make({.tree = {.max_resolution = 64}});  // whose finest voxels the view shows already
     (void)coarse.render(view_);
-    EXPECT_LE(coarse.prefetch_finer(1e9).bricks, 1U) << "but for the root's, which may stand in";
-    EXPECT_FALSE(coarse.prefetch_finer(1e9).more);
+    EXPECT_LE(coarse.prefetch_finer(Milliseconds(1e9)).bricks, 1U)
+        << "but for the root's, which may stand in";
+    EXPECT_FALSE(coarse.prefetch_finer(Milliseconds(1e9)).more);
 }
 
 TEST_F(PrefetchFiner, ViewerThatStandsStillLooksAheadAndThenRests) {
@@ -129,14 +131,15 @@ TEST_F(PrefetchFiner, ViewerThatStandsStillLooksAheadAndThenRests) {
     };
     rest();
     EXPECT_TRUE(viewer.converged());
-    const optics::Image expected = make().render(view_);
+    const optics::Image expected = make().render(view_).image;
     EXPECT_EQ(viewer.growing().image().rgba, expected.rgba);
-    EXPECT_FALSE(renderer.prefetch_finer(1e9).more) << "it rests too early";
+    EXPECT_FALSE(renderer.prefetch_finer(Milliseconds(1e9)).more) << "it rests too early";
     const std::uint64_t produced = viewer.bricks_produced();
     renderer.forget_picture();
-    EXPECT_EQ(renderer.render_within(view_, 1e9).rgba, expected.rgba);
-    EXPECT_EQ(renderer.statistics().bricks_produced, 0U) << "the view lost bricks";
-    EXPECT_GT(renderer.statistics().bricks_prefetched, 20U);
+    const renderer::Frame frame = renderer.render(view_, {.budget = Milliseconds(1e9)});
+    EXPECT_EQ(frame.image.rgba, expected.rgba);
+    EXPECT_EQ(frame.statistics.bricks_produced, 0U) << "the view lost bricks";
+    EXPECT_GT(frame.statistics.bricks_prefetched, 20U);
     for (int i = 0; i < 5; ++i)
         viewer.step(now += 1.0);
     EXPECT_EQ(viewer.bricks_produced(), produced) << "it does not rest";

@@ -11,15 +11,16 @@
 #include "renderer/renderer.h"
 #include "shaders/interop/windows.h"
 #include "tests/support/gl_fixture.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
 using renderer::FractalContent;
+using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::Tile;
-using renderer::TreeOptions;
 using renderer::View;
 
 struct Depth {
@@ -30,24 +31,24 @@ void PrintTo(const Depth& depth, std::ostream* out) {
     *out << fmt::format("N = {}, M = {}, {} levels", depth.n, depth.m, depth.max_level);
 }
 
-TreeOptions deep_options(const Depth& depth) {
-    TreeOptions options;
-    options.n = depth.n;
-    options.m = depth.m;
-    options.max_level = depth.max_level;
-    options.brick_pool_bytes = 32U << 20U;
+Settings deep_options(const Depth& depth) {
+    Settings options;
+    options.tree.n = depth.n;
+    options.tree.m = depth.m;
+    options.tree.max_level = depth.max_level;
+    options.pools.brick_bytes = 32U << 20U;
     return options;
 }
 
-Renderer make_renderer(const TreeOptions& options) {
-    return {std::make_unique<FractalContent>(renderer::tree_shape_of(options)), options};
+Renderer make_renderer(const Settings& options) {
+    return Renderer(renderer::fractal_content(options.tree), options.options());
 }
 
 /// The middle of the root cube, around which the set repeats itself, from `n^-level` of the root cube away.
 View zoomed_view(int n, int level) {
     View view;
-    view.width = 96;
-    view.height = 72;
+    view.size.width = 96;
+    view.size.height = 72;
     const std::int64_t across = std::int64_t(1) << (n == 4 ? 2 * level : level);
     view.anchor = Tile{level, glm::i64vec3(across / 2)};
     view.camera.eye = {0.71, 0.53, 0.62};
@@ -102,10 +103,10 @@ protected:
 
 TEST_P(Zoom, PicturesAtEachPowerAreTheSameBitForBitDownTo2ToTheMinus40) {
     Renderer renderer = make_renderer(deep_options(GetParam()));
-    const optics::Image first = renderer.render(zoomed_view(GetParam().n, 2));
+    const optics::Image first = renderer.render(zoomed_view(GetParam().n, 2)).image;
     expect_a_picture(first);
     for (int level = 3; level <= deepest(); ++level) {
-        const optics::Image image = renderer.render(zoomed_view(GetParam().n, level));
+        const optics::Image image = renderer.render(zoomed_view(GetParam().n, level)).image;
         const Difference difference = compare(image, first);
         ASSERT_EQ(difference.pixels, 0U) << "level " << level << ": " << difference.first << ", "
                                          << difference.silhouettes << " of silhouettes";
@@ -121,7 +122,7 @@ TEST_P(Zoom, SmallStepsOfTheCameraChangeADeepPictureAsAShallowOne) {
             View view = zoomed_view(GetParam().n, level);
             // A pixel shows about 2^-7 of the anchor's side.
             view.camera.eye += glm::dvec3(1.0, -0.5, 0.25) * (step * 0x1p-11);
-            return renderer.render(view);
+            return renderer.render(view).image;
         };
         const optics::Image shallow = moved(3);
         const optics::Image deep = moved(deepest());
@@ -139,7 +140,7 @@ TEST_P(Zoom, NearLightCastsTheSameShadowsAtEveryDepth) {
         View view = zoomed_view(GetParam().n, level);
         view.light.positional = true;
         view.light.position = {0.45, 0.8, 0.3};
-        return renderer.render(view);
+        return renderer.render(view).image;
     };
     const optics::Image shallow = lit(3);
     const optics::Image deep = lit(deepest());
@@ -148,19 +149,20 @@ TEST_P(Zoom, NearLightCastsTheSameShadowsAtEveryDepth) {
     View dark = zoomed_view(GetParam().n, 3);
     dark.light.positional = true;
     dark.light.position = {0.45, 0.8, 0.3};
-    dark.shadow = renderer::Shadow::none;
-    EXPECT_GT(compare(renderer.render(dark), shallow, 20).pixels, 50U) << "there is no shadow to speak of";
+    dark.shadow.kind = renderer::ShadowQuality::Kind::none;
+    EXPECT_GT(compare(renderer.render(dark).image, shallow, 20).pixels, 50U)
+        << "there is no shadow to speak of";
 }
 
 TEST_P(Zoom, WindowsShowWhatTheRootAloneShows) {
-    TreeOptions shallow = deep_options(GetParam());
-    shallow.max_level.reset();
-    shallow.max_resolution = 1 << 18;
+    Settings shallow = deep_options(GetParam());
+    shallow.tree.max_level.reset();
+    shallow.tree.max_resolution = 1 << 18;
     Renderer whole = make_renderer(shallow);
     Renderer deep = make_renderer(deep_options(GetParam()));
     View outside;
-    outside.width = 96;
-    outside.height = 72;
+    outside.size.width = 96;
+    outside.size.height = 72;
     outside.camera.eye = {2.6, 2.1, 2.9};
     outside.camera.target = {0.5, 0.5, 0.5};
     View far = outside;
@@ -170,36 +172,37 @@ TEST_P(Zoom, WindowsShowWhatTheRootAloneShows) {
     beside.camera.eye = {1.3, 1.2, 1.1};
     for (const View& view :
          {zoomed_view(GetParam().n, 1), zoomed_view(GetParam().n, 2), outside, far, beside}) {
-        const optics::Image expected = whole.render(view);
+        const optics::Image expected = whole.render(view).image;
         expect_a_picture(expected);
         // The eye is rounded to floats in other units: a ray that grazes a voxel's edge may take its other
         // side.
-        const Difference difference = compare(deep.render(view), expected, 2);
+        const Difference difference = compare(deep.render(view).image, expected, 2);
         EXPECT_LE(difference.pixels, expected.rgba.size() / 4 / 100)
             << difference.first << "; eye " << view.camera.eye.x;
     }
 }
 
 TEST_P(Zoom, SmallPoolsAndFramesWithoutTimeEndWithTheSamePicture) {
-    TreeOptions options = deep_options(GetParam());
+    Settings options = deep_options(GetParam());
     const View view = zoomed_view(GetParam().n, deepest() - 1);
     Renderer roomy = make_renderer(options);
-    const optics::Image expected = roomy.render(view);
+    const optics::Image expected = roomy.render(view).image;
     Renderer hasty = make_renderer(options);
-    optics::Image image = hasty.render_within(view, 0.0);
-    for (int frame = 0; frame < 400 && !hasty.statistics().converged; ++frame)
-        image = hasty.render_within(view, 0.0);
-    EXPECT_TRUE(hasty.statistics().converged);
-    EXPECT_EQ(compare(image, expected).pixels, 0U);
+    renderer::Frame refined = hasty.render(view, {.budget = Milliseconds(0.0)});
+    for (int frame = 0; frame < 400 && !refined.statistics.converged; ++frame)
+        refined = hasty.render(view, {.budget = Milliseconds(0.0)});
+    EXPECT_TRUE(refined.statistics.converged);
+    EXPECT_EQ(compare(refined.image, expected).pixels, 0U);
 
-    const std::size_t side = std::size_t(options.m) + 2;
-    options.brick_pool_bytes = 12 * side * side * side * 6;
-    const std::size_t block_bytes = std::size_t(options.n * options.n * options.n) * 16;
-    options.node_pool_bytes = (std::size_t(GetParam().max_level) + 6) * block_bytes;
+    const std::size_t side = std::size_t(options.tree.m) + 2;
+    options.pools.brick_bytes = 12 * side * side * side * 6;
+    const std::size_t block_bytes = std::size_t(options.tree.n * options.tree.n * options.tree.n) * 16;
+    options.pools.node_bytes = (std::size_t(GetParam().max_level) + 6) * block_bytes;
     Renderer tight = make_renderer(options);
-    EXPECT_EQ(compare(tight.render(view), expected).pixels, 0U);
-    EXPECT_GT(tight.statistics().nodes_evicted, 0U);
-    EXPECT_GT(tight.statistics().bricks_evicted, 0U);
+    const renderer::Frame tight_frame = tight.render(view);
+    EXPECT_EQ(compare(tight_frame.image, expected).pixels, 0U);
+    EXPECT_GT(tight_frame.statistics.nodes_evicted, 0U);
+    EXPECT_GT(tight_frame.statistics.bricks_evicted, 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Trees, Zoom, ::testing::Values(Depth{2, 16, 54}, Depth{4, 16, 28}, Depth{2, 8, 56}),
@@ -253,12 +256,12 @@ TEST(Windows, EmptyOnesAroundTheEyeAreLeftOut) {
 }
 
 TEST_F(GlTest, ImpossibleDepthsAndAnchorsAreRefused) {
-    TreeOptions options;
-    options.max_level = 29;
-    EXPECT_THROW((void)renderer::tree_shape_of(options), Error);
-    options.max_level = -1;
-    EXPECT_THROW((void)renderer::tree_shape_of(options), Error);
-    options.max_level = 28;
+    Settings options;
+    options.tree.max_level = 29;
+    EXPECT_THROW((void)renderer::tree_shape_of(options.tree), Error);
+    options.tree.max_level = -1;
+    EXPECT_THROW((void)renderer::tree_shape_of(options.tree), Error);
+    options.tree.max_level = 28;
     Renderer deep = make_renderer(options);
     View view = zoomed_view(4, 2);
     view.anchor = Tile{29, glm::i64vec3(0)};

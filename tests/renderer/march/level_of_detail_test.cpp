@@ -12,14 +12,15 @@
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
 using renderer::LevelOfDetail;
+using renderer::Milliseconds;
 using renderer::Renderer;
-using renderer::TreeOptions;
 using renderer::View;
 
 struct Change {
@@ -54,17 +55,17 @@ std::size_t pixels_that_differ(const optics::Image& a, const optics::Image& b, i
     return count;
 }
 
-Renderer make_renderer(const scenes::Scene& scene, TreeOptions options, bool mips = true) {
-    options.mips = mips;
-    return Renderer(scene, scenes::take_snapshot(scene), options);
+Renderer make_renderer(const scenes::Scene& scene, Settings options, bool mips = true) {
+    options.tree.mips = mips;
+    return voxel_renderer(scene, scenes::take_snapshot(scene), options);
 }
 
-View view_of(const scenes::Scene& scene, int width, int height, LevelOfDetail level_of_detail) {
+View view_of(const scenes::Scene& scene, int width, int height, LevelOfDetail::Kind level_of_detail) {
     View view;
-    view.width = width;
-    view.height = height;
+    view.size.width = width;
+    view.size.height = height;
     view.camera = optics::framing_camera(scenes::take_snapshot(scene).bounds, double(width) / height);
-    view.level_of_detail = level_of_detail;
+    view.detail.kind = level_of_detail;
     return view;
 }
 
@@ -83,14 +84,14 @@ Jumps jumps_of(Renderer& renderer, View view, int steps) {
     Jumps jumps;
     optics::Image before;
     for (int step = 0; step <= steps; ++step) {
-        view.pixel_error = std::pow(16.0, double(step) / steps);
-        optics::Image image = renderer.render(view);
+        view.detail.pixel_error = std::pow(16.0, double(step) / steps);
+        optics::Image image = renderer.render(view).image;
         if (step > 0) {
             const Change change = change_between(before, image);
             jumps.largest = std::max(jumps.largest, change.mean);
             if (change.largest > jumps.largest_pixel) {
                 jumps.largest_pixel = change.largest;
-                jumps.where = fmt::format("pixel error {}, {}", view.pixel_error, change.where);
+                jumps.where = fmt::format("pixel error {}, {}", view.detail.pixel_error, change.where);
             }
             jumps.mean += change.mean / steps;
         }
@@ -103,12 +104,13 @@ TEST_F(LevelOfDetailTest, NothingPopsWhileTheConeGrowsSixteenfold) {
     // Across two levels of N = 4, each in 100 steps. Blended, all pixels change a little in every step; with
     // the nearest level, those at the same distance change all at once.
     const scenes::Scene scene = ball_over_floor();
-    Renderer renderer = make_renderer(scene, {.max_resolution = 1024});
+    Renderer renderer = make_renderer(scene, {.tree = {.max_resolution = 1024}});
     const int steps = 200;
-    View view = view_of(scene, 96, 72, LevelOfDetail::blended);
-    view.shadow = renderer::Shadow::none;  // whose edges move with the voxels that cast them
+    View view = view_of(scene, 96, 72, LevelOfDetail::Kind::blended);
+    view.shadow.kind =
+        renderer::ShadowQuality::Kind::none;  // whose edges move with the voxels that cast them
     const Jumps blended = jumps_of(renderer, view, steps);
-    view.level_of_detail = LevelOfDetail::nearest;
+    view.detail.kind = LevelOfDetail::Kind::nearest;
     const Jumps nearest = jumps_of(renderer, view, steps);
     fmt::print(
         "largest change of a pixel in a step: blended {}, nearest {}; of a frame's mean {:.3f}, {:.3f}; "
@@ -121,10 +123,10 @@ TEST_F(LevelOfDetailTest, NothingPopsWhileTheConeGrowsSixteenfold) {
 
 TEST_F(LevelOfDetailTest, MovingBackInSmallStepsChangesLittle) {
     const scenes::Scene scene = ball_over_floor();
-    Renderer renderer = make_renderer(scene, {.max_resolution = 1024});
-    auto largest = [&](LevelOfDetail level_of_detail) {
+    Renderer renderer = make_renderer(scene, {.tree = {.max_resolution = 1024}});
+    auto largest = [&](LevelOfDetail::Kind level_of_detail) {
         View view = view_of(scene, 64, 48, level_of_detail);
-        view.shadow = renderer::Shadow::none;
+        view.shadow.kind = renderer::ShadowQuality::Kind::none;
         const glm::dvec3 back = view.camera.eye - view.camera.target;
         const int steps = 200;
         double most = 0.0;
@@ -135,34 +137,34 @@ TEST_F(LevelOfDetailTest, MovingBackInSmallStepsChangesLittle) {
             const double distance = std::pow(4.0, double(step) / steps);
             view.camera.eye = view.camera.target + back * distance;
             view.camera.yfov = 0.7;
-            optics::Image image = renderer.render(view);
+            optics::Image image = renderer.render(view).image;
             if (step > 0) most = std::max(most, change_between(before, image).mean);
             before = std::move(image);
         }
         return most;
     };
-    const double blended = largest(LevelOfDetail::blended);
-    const double nearest = largest(LevelOfDetail::nearest);
+    const double blended = largest(LevelOfDetail::Kind::blended);
+    const double nearest = largest(LevelOfDetail::Kind::nearest);
     fmt::print("largest mean change of a frame: blended {:.3f}, nearest {:.3f}\n", blended, nearest);
     EXPECT_LT(blended * 1.2, nearest);
 }
 
 class BlendedShapes : public GlTest, public ::testing::WithParamInterface<std::pair<int, int>> {
 protected:
-    [[nodiscard]] static TreeOptions options(int max_resolution) {
-        return {.n = GetParam().first, .m = GetParam().second, .max_resolution = max_resolution};
+    [[nodiscard]] static Settings options(int max_resolution) {
+        return {.tree = {.n = GetParam().first, .m = GetParam().second, .max_resolution = max_resolution}};
     }
 };
 
 TEST_P(BlendedShapes, NoVoxelIsNarrowerThanThePixelMeansTheFinestAlone) {
     const scenes::Scene scene = ball_over_floor();
     Renderer renderer = make_renderer(scene, options(64));
-    View view = view_of(scene, 120, 90, LevelOfDetail::blended);
-    view.pixel_error = 1e-6;
-    view.shadow = renderer::Shadow::none;
-    const optics::Image blended = renderer.render(view);
-    view.level_of_detail = LevelOfDetail::nearest;
-    const optics::Image nearest = renderer.render(view);
+    View view = view_of(scene, 120, 90, LevelOfDetail::Kind::blended);
+    view.detail.pixel_error = 1e-6;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
+    const optics::Image blended = renderer.render(view).image;
+    view.detail.kind = LevelOfDetail::Kind::nearest;
+    const optics::Image nearest = renderer.render(view).image;
     // Blended voxels that look away from the viewer count as silhouettes up to a wider angle: that shows at
     // some of them.
     EXPECT_LE(pixels_that_differ(blended, nearest, 2), blended.rgba.size() / 4 / 200)
@@ -173,29 +175,32 @@ TEST_P(BlendedShapes, NoVoxelIsNarrowerThanThePixelMeansTheFinestAlone) {
 
 TEST_P(BlendedShapes, PictureDoesNotDependOnHowOftenRaysAreInterrupted) {
     const scenes::Scene scene = ball_over_floor();
-    const View view = view_of(scene, 120, 90, LevelOfDetail::blended);
-    TreeOptions tree = options(512);
+    const View view = view_of(scene, 120, 90, LevelOfDetail::Kind::blended);
+    Settings tree = options(512);
     Renderer roomy = make_renderer(scene, tree);
-    const optics::Image expected = roomy.render(view);
-    EXPECT_EQ(roomy.render(view).rgba, expected.rgba) << "one pass, no ray waits";
-    tree.brick_pool_bytes = roomy.statistics().brick_pool_bytes / roomy.statistics().brick_slots * 8;
-    tree.node_pool_bytes = std::size_t(12 * std::max(tree.n * tree.n * tree.n, 64)) * 16;
+    const optics::Image expected = roomy.render(view).image;
+    const renderer::Frame frame = roomy.render(view);
+    EXPECT_EQ(frame.image.rgba, expected.rgba) << "one pass, no ray waits";
+    tree.pools.brick_bytes = frame.statistics.brick_pool_bytes / frame.statistics.brick_slots * 8;
+    tree.pools.node_bytes = std::size_t(12 * std::max(tree.tree.n * tree.tree.n * tree.tree.n, 64)) * 16;
     Renderer tight = make_renderer(scene, tree);
-    EXPECT_EQ(tight.render(view).rgba, expected.rgba) << "a few bricks at a time";
-    EXPECT_GT(tight.statistics().passes, roomy.statistics().passes);
-    tree.brick_cache_bytes = std::size_t(64) << 20U;
+    const renderer::Frame tight_frame = tight.render(view);
+    EXPECT_EQ(tight_frame.image.rgba, expected.rgba) << "a few bricks at a time";
+    EXPECT_GT(tight_frame.statistics.passes, frame.statistics.passes);
+    tree.pools.cache_bytes = std::size_t(64) << 20U;
     Renderer cached = make_renderer(scene, tree);
     (void)cached.render(view);
     cached.forget_picture();
-    EXPECT_EQ(cached.render(view).rgba, expected.rgba) << "with bricks from main memory";
-    EXPECT_GT(cached.statistics().bricks_restored, 0U);
+    const renderer::Frame cached_frame = cached.render(view);
+    EXPECT_EQ(cached_frame.image.rgba, expected.rgba) << "with bricks from main memory";
+    EXPECT_GT(cached_frame.statistics.bricks_restored, 0U);
     Renderer hurried = make_renderer(scene, options(512));
     int frames = 0;
-    optics::Image ours;
+    renderer::Frame ours;
     do {
-        ours = hurried.render_within(view, 0.0);
-    } while (!hurried.statistics().converged && ++frames < 300);
-    EXPECT_EQ(ours.rgba, expected.rgba) << "after " << frames << " frames without time";
+        ours = hurried.render(view, {.budget = Milliseconds(0.0)});
+    } while (!ours.statistics.converged && ++frames < 300);
+    EXPECT_EQ(ours.image.rgba, expected.rgba) << "after " << frames << " frames without time";
 }
 
 TEST_P(BlendedShapes, ClosedSurfaceLetsNoBackgroundThrough) {
@@ -203,17 +208,17 @@ TEST_P(BlendedShapes, ClosedSurfaceLetsNoBackgroundThrough) {
     const scenes::Scene scene = sheet(glm::vec4(1.0F));
     Renderer renderer = make_renderer(scene, options(512));
     View view;
-    view.width = 64;
-    view.height = 48;
+    view.size.width = 64;
+    view.size.height = 48;
     view.camera = {.eye = {0.05, 0.35, 0.4}, .target = {0.0, 0.0, 0.0}};
-    view.shadow = renderer::Shadow::none;
-    view.level_of_detail = LevelOfDetail::blended;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
+    view.detail.kind = LevelOfDetail::Kind::blended;
     for (int step = 0; step < 24; ++step) {
-        view.pixel_error = 0.25 * std::pow(64.0, step / 23.0);
-        const optics::Image image = renderer.render(view);
+        view.detail.pixel_error = 0.25 * std::pow(64.0, step / 23.0);
+        const optics::Image image = renderer.render(view).image;
         for (std::size_t i = 3; i < image.rgba.size(); i += 4) {
             ASSERT_EQ(image.rgba[i], 255)
-                << "pixel error " << view.pixel_error << ", pixel " << i / 4 % 64 << ' ' << i / 4 / 64;
+                << "pixel error " << view.detail.pixel_error << ", pixel " << i / 4 % 64 << ' ' << i / 4 / 64;
         }
     }
 }
@@ -230,27 +235,29 @@ TEST_F(LevelOfDetailTest, BricksOfAllSizesBlendToTheSamePicture) {
     // passes into the next, shows nowhere. N = 2, so that the levels of all three trees have voxels of the
     // same sizes.
     const scenes::Scene scene = ball_over_floor();
-    auto render = [&](int m, LevelOfDetail level_of_detail) {
+    auto render = [&](int m, LevelOfDetail::Kind level_of_detail) {
         View view = view_of(scene, 160, 120, level_of_detail);
         view.camera.eye = glm::mix(view.camera.target, view.camera.eye, 0.6);
-        view.pixel_error = 4.0;
-        return make_renderer(scene, {.n = 2, .m = m, .max_resolution = 512}).render(view);
+        view.detail.pixel_error = 4.0;
+        return make_renderer(scene, {.tree = {.n = 2, .m = m, .max_resolution = 512}}).render(view).image;
     };
-    const optics::Image large = render(32, LevelOfDetail::blended);
+    const optics::Image large = render(32, LevelOfDetail::Kind::blended);
     for (const int m : {8, 16}) {
-        const Change change = change_between(large, render(m, LevelOfDetail::blended));
+        const Change change = change_between(large, render(m, LevelOfDetail::Kind::blended));
         EXPECT_LE(change.largest, 1) << "M = " << m << ", " << change.where;
     }
     // Several levels are in view: nearest, a tile has one from end to end, and larger ones pass into the next
     // later.
-    EXPECT_GT(change_between(render(32, LevelOfDetail::nearest), render(8, LevelOfDetail::nearest)).largest,
-              20);
+    EXPECT_GT(
+        change_between(render(32, LevelOfDetail::Kind::nearest), render(8, LevelOfDetail::Kind::nearest))
+            .largest,
+        20);
 }
 
 TEST_F(LevelOfDetailTest, BlendingNeedsMips) {
     const scenes::Scene scene = ball_over_floor();
-    Renderer renderer = make_renderer(scene, {.max_resolution = 64}, false);
-    const View view = view_of(scene, 16, 16, LevelOfDetail::blended);
+    Renderer renderer = make_renderer(scene, {.tree = {.max_resolution = 64}}, false);
+    const View view = view_of(scene, 16, 16, LevelOfDetail::Kind::blended);
     try {
         (void)renderer.render(view);
         FAIL() << "accepted";
@@ -270,22 +277,23 @@ TEST_F(LevelOfDetailTest, MipsGoWithSurfacesAndPowersOfTwo) {
         return Fault::internal;
     };
     const scenes::Scene scene = ball_over_floor();
-    EXPECT_EQ(fault_of([&] { (void)make_renderer(scene, {.n = 3, .m = 27, .max_resolution = 243}); }),
-              Fault::usage);
+    EXPECT_EQ(
+        fault_of([&] { (void)make_renderer(scene, {.tree = {.n = 3, .m = 27, .max_resolution = 243}}); }),
+        Fault::usage);
     scenes::Volume fog;
     fog.size = glm::ivec3(16);
     fog.samples.assign(4096, 30000);
     const renderer::TransferFunction transfer({{.value = 0.0, .extinction = 1.0}});
-    EXPECT_EQ(fault_of([&] { (void)Renderer(fog, transfer, {.mips = true}); }), Fault::usage);
-    TreeOptions deep{.mips = true, .max_level = 20};
-    EXPECT_EQ(fault_of([&] { (void)renderer::tree_shape_of(deep); }), Fault::usage);
+    EXPECT_EQ(fault_of([&] { (void)voxel_renderer(fog, transfer, {.tree = {.mips = true}}); }), Fault::usage);
+    Settings deep{.tree = {.mips = true, .max_level = 20}};
+    EXPECT_EQ(fault_of([&] { (void)renderer::tree_shape_of(deep.tree); }), Fault::usage);
 }
 
 TEST_F(LevelOfDetailTest, MipsDoNotChangeTheNearestLevelsPicture) {
     const scenes::Scene scene = scenes::make_builtin("knot");
-    const View view = view_of(scene, 160, 120, LevelOfDetail::nearest);
-    const optics::Image with = make_renderer(scene, {}, true).render(view);
-    const optics::Image without = make_renderer(scene, {}, false).render(view);
+    const View view = view_of(scene, 160, 120, LevelOfDetail::Kind::nearest);
+    const optics::Image with = make_renderer(scene, {}, true).render(view).image;
+    const optics::Image without = make_renderer(scene, {}, false).render(view).image;
     EXPECT_EQ(with.rgba, without.rgba);
 }
 

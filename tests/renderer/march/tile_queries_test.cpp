@@ -12,6 +12,7 @@
 #include "renderer/march/tile_blocks.h"
 #include "renderer/produce/fractal_content.h"
 #include "renderer/produce/surface_content.h"
+#include "renderer/produce/tile_cache.h"
 #include "renderer/renderer.h"
 #include "scenes/builtin/builtin.h"
 #include "scenes/snapshot.h"
@@ -21,15 +22,18 @@
 #include "tests/support/lattice_surface.h"
 #include "tests/support/test_scenes.h"
 #include "tests/support/volume_scenes.h"
+#include "tests/support/voxel_renderer.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
+using renderer::Milliseconds;
+using renderer::QueryKind;
 using renderer::Renderer;
 using renderer::TileQueries;
-using renderer::TreeOptions;
+using renderer::TileQuery;
 using renderer::View;
 
 // --- the reduction ---
@@ -100,9 +104,8 @@ TEST_F(TileBlocksTest, EachBlockKeepsTheFirstFourDifferentTiles) {
 struct Scenery {
     Scenery()
         : shape_(renderer::make_tree_shape(2, 8, 512)),
-          content_(shape_, surface(), {}),
-          pool_(shape_, content_.channels(), 64U << 20U),
-          tree_(shape_, pool_.slot_count(), 8U << 20U, content_.oracle().child_mask({})) {
+          cache_(shape_, std::make_unique<renderer::SurfaceContent>(shape_, surface(), gl::ShaderSource{}),
+                 {.node_pool_bytes = 8U << 20U, .brick_pool_bytes = 64U << 20U}) {
         const auto side = float(shape_.resolution());
         view_.eye = {0.4F * side, 0.6F * side, 1.6F * side};
         view_.pixel_cone = 0.004F;
@@ -120,49 +123,33 @@ struct Scenery {
                                         {.attributes = true});
     }
     [[nodiscard]] renderer::Marcher marcher(const renderer::MarchOptions& options) const {
-        return {shape_, content_.has_color(), options, {}};
+        return {shape_, cache_.content().has_color(), options, {}};
     }
     renderer::PassResult first_pass(renderer::Marcher& marcher) const {
-        marcher.begin_frame(view_, tree_, pool_, false);
-        return marcher.run_pass(round_, tree_, pool_);
+        marcher.begin_frame(view_, cache_.tree(), cache_.pool(), false);
+        return marcher.run_pass(round_, cache_.tree(), cache_.pool());
     }
-    /// Whether it is for a brick, and the level. Those that serve() answers first are the largest.
-    [[nodiscard]] std::tuple<bool, int> urgency(std::uint32_t query) const {
-        return {query % 2 == QUERY_BRICK, tree_.tile(query / 2).level};
+    /// Whether it is for a brick, and the level. Those that TileCache::answer() answers first are the
+    /// largest.
+    [[nodiscard]] std::tuple<bool, int> urgency(const TileQuery& query) const {
+        return {query.kind == QueryKind::brick, cache_.tree().tile(query.entry).level};
     }
-    [[nodiscard]] std::tuple<bool, int> most_urgent(const std::vector<std::uint32_t>& queries) const {
+    [[nodiscard]] std::tuple<bool, int> most_urgent(const std::vector<TileQuery>& queries) const {
         std::tuple<bool, int> most{false, -1};
-        for (const std::uint32_t query : queries)
+        for (const TileQuery& query : queries)
             most = std::max(most, urgency(query));
         // Any brick brings a ray to its data.
         return std::get<0>(most) ? std::tuple<bool, int>{true, 0} : most;
     }
-    void answer(std::uint32_t query) {
-        const std::uint32_t entry = query / 2;
-        if (query % 2 == QUERY_BRICK) {
-            const std::optional<int> slot = tree_.add_brick(entry);
-            ASSERT_TRUE(slot);
-            const renderer::BrickRequest request{tree_.tile(entry), *slot};
-            (void)content_.producer().produce({&request, 1}, pool_);
-        } else {
-            const std::optional<std::uint32_t> first = tree_.add_children(entry);
-            ASSERT_TRUE(first);
-            const glm::uvec2 mask = content_.oracle().child_mask(tree_.tile(entry));
-            for (int child = 0; child < shape_.child_count(); ++child) {
-                if (!renderer::may_hold(mask, shape_.n, child)) continue;
-                const renderer::Tile tile = renderer::child_of(tree_.tile(entry), shape_.n, child);
-                tree_.set_child_mask(*first + std::uint32_t(child), content_.oracle().child_mask(tile));
-            }
-        }
-        tree_.upload();
+    void answer(const TileQuery& query) {
+        ASSERT_EQ(cache_.answer({&query, 1}).count(), 1U);
+        cache_.upload();
     }
 
     renderer::TreeShape shape_;
-    renderer::SurfaceContent content_;
-    renderer::BrickPool pool_;
-    renderer::Tree tree_;
+    renderer::TileCache cache_;
     interop::MarchView view_{};
-    std::uint32_t round_ = 1;
+    renderer::Round round_{1};
 };
 
 class UrgentQueries : public GlTest {};
@@ -176,22 +163,23 @@ TEST_F(UrgentQueries, MostUrgentIsKnownThoughThereIsRoomForOneAlone) {
     int mixed = 0;
     for (int step = 0; step < 150; ++step) {
         SCOPED_TRACE(fmt::format("seed 12, step {}", step));
-        ++scenery.round_;
+        scenery.round_ = scenery.round_.next();
         const renderer::PassResult asked = scenery.first_pass(all);
         if (asked.done()) break;
         const auto most = scenery.most_urgent(asked.queries);
         const auto least = scenery.urgency(*std::min_element(
             asked.queries.begin(), asked.queries.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return scenery.urgency(a) < scenery.urgency(b); }));
+            [&](const TileQuery& a, const TileQuery& b) { return scenery.urgency(a) < scenery.urgency(b); }));
         mixed += !std::get<0>(least) && least != most ? 1 : 0;
         for (renderer::Marcher* lossy : {&few, &blocks}) {
             const renderer::PassResult told = scenery.first_pass(*lossy);
             EXPECT_EQ(scenery.most_urgent(told.queries), most);
-            for (const std::uint32_t query : told.queries)
-                EXPECT_EQ(std::count(asked.queries.begin(), asked.queries.end(), query), 1) << query;
+            for (const TileQuery& query : told.queries)
+                EXPECT_EQ(std::count(asked.queries.begin(), asked.queries.end(), query), 1) << query.entry;
             EXPECT_EQ(told.waiting_primary, asked.waiting_primary);
         }
-        scenery.tree_.begin_round(++scenery.round_, asked.brick_stamps);
+        scenery.round_ = scenery.round_.next();
+        scenery.cache_.begin_round(scenery.round_, asked.brick_stamps);
         const auto count = std::int64_t(asked.queries.size());
         scenery.answer(asked.queries[std::size_t(random.between(0, count - 1))]);
     }
@@ -203,16 +191,16 @@ TEST_F(UrgentQueries, MostUrgentIsKnownThoughThereIsRoomForOneAlone) {
 class TileQueriesTest : public GlTest {
 protected:
     TileQueriesTest() : scene_(scenes::make_builtin("knot")), snapshot_(scenes::take_snapshot(scene_)) {
-        view_.width = 101;
-        view_.height = 70;
-        view_.pixel_error = 0.3;
+        view_.size.width = 101;
+        view_.size.height = 70;
+        view_.detail.pixel_error = 0.3;
         view_.camera = optics::framing_camera(snapshot_.bounds, 1.4);
     }
-    [[nodiscard]] Renderer make(const TreeOptions& options = {}) const {
-        return Renderer(scene_, snapshot_, options);
+    [[nodiscard]] Renderer make(const Settings& options = {}) const {
+        return voxel_renderer(scene_, snapshot_, options);
     }
-    [[nodiscard]] static TreeOptions with_blocks(TreeOptions options = {}) {
-        options.tile_queries = TileQueries::blocks;
+    [[nodiscard]] static Settings with_blocks(Settings options = {}) {
+        options.march.tile_queries = TileQueries::blocks;
         return options;
     }
     static constexpr std::size_t slot_bytes = 18 * 18 * 18 * 5 + 65 * 8;
@@ -226,13 +214,14 @@ protected:
 TEST_F(TileQueriesTest, BlocksTellEnoughForTheSamePicture) {
     for (const int n : {2, 4}) {
         SCOPED_TRACE(n);
-        const TreeOptions options{.n = n, .brick_pool_bytes = 64U << 20U};
+        const Settings options{.tree = {.n = n}, .pools = {.brick_bytes = 64U << 20U}};
         Renderer list = make(options);
         Renderer blocks = make(with_blocks(options));
-        const optics::Image expected = list.render(view_);
-        EXPECT_EQ(blocks.render(view_).rgba, expected.rgba);
-        const renderer::FrameStatistics& of_list = list.statistics();
-        const renderer::FrameStatistics& of_blocks = blocks.statistics();
+        const renderer::Frame expected = list.render(view_);
+        const renderer::Frame frame = blocks.render(view_);
+        EXPECT_EQ(frame.image.rgba, expected.image.rgba);
+        const renderer::FrameStatistics& of_list = expected.statistics;
+        const renderer::FrameStatistics& of_blocks = frame.statistics;
         EXPECT_EQ(of_blocks.bricks_produced, of_list.bricks_produced) << "nothing had to go";
         EXPECT_GE(of_blocks.passes, of_list.passes);
         EXPECT_GT(of_blocks.query_bytes, 0U);
@@ -242,25 +231,27 @@ TEST_F(TileQueriesTest, BlocksTellEnoughForTheSamePicture) {
         EXPECT_LT(bytes_a_pass(of_blocks), bytes_a_pass(of_list));
         EXPECT_GE(bytes_a_pass(of_list), of_list.brick_slots * 4) << "a stamp for each slot";
         blocks.forget_picture();
-        EXPECT_EQ(blocks.render_rows(view_, {16, 40}).rgba,
-                  std::vector<std::uint8_t>(expected.rgba.begin() + 16 * view_.width * 4,
-                                            expected.rgba.begin() + 56 * view_.width * 4));
-        EXPECT_EQ(blocks.statistics().bricks_produced, 0U);
+        const renderer::Frame blocks_frame = blocks.render(view_, {.rows = renderer::Rows{16, 40}});
+        EXPECT_EQ(blocks_frame.image.rgba,
+                  std::vector<std::uint8_t>(expected.image.rgba.begin() + 16 * view_.size.width * 4,
+                                            expected.image.rgba.begin() + 56 * view_.size.width * 4));
+        EXPECT_EQ(blocks_frame.statistics.bricks_produced, 0U);
     }
 }
 
 TEST_F(TileQueriesTest, BlocksSufficeForPoolsFarTooSmall) {
     Renderer whole = make();
-    const optics::Image expected = whole.render(view_);
+    const renderer::Frame expected = whole.render(view_);
     for (const double share : {0.3, 0.02}) {
-        TreeOptions options = with_blocks();
-        options.brick_pool_bytes =
-            std::size_t(double(whole.statistics().bricks_produced) * share) * slot_bytes;
-        options.node_pool_bytes = few_nodes;
+        Settings options = with_blocks();
+        options.pools.brick_bytes =
+            std::size_t(double(expected.statistics.bricks_produced) * share) * slot_bytes;
+        options.pools.node_bytes = few_nodes;
         Renderer tight = make(options);
-        EXPECT_EQ(tight.render(view_).rgba, expected.rgba) << share;
-        EXPECT_GT(tight.statistics().bricks_evicted, 0U);
-        EXPECT_GT(tight.statistics().nodes_evicted, 0U);
+        const renderer::Frame frame = tight.render(view_);
+        EXPECT_EQ(frame.image.rgba, expected.image.rgba) << share;
+        EXPECT_GT(frame.statistics.bricks_evicted, 0U);
+        EXPECT_GT(frame.statistics.nodes_evicted, 0U);
     }
 }
 
@@ -268,70 +259,71 @@ TEST_F(TileQueriesTest, BlocksServeVolumesAndConstantTiles) {
     const scenes::Volume volume = blobs(glm::ivec3(48), 3);
     View view = glowing_view(volume.bounds(), 90, 50);
     view.light.ambient = 0.3F;
-    view.shadow = renderer::Shadow::hard;
+    view.shadow.kind = renderer::ShadowQuality::Kind::hard;
     for (const std::size_t bytes : {std::size_t(8) << 20U, std::size_t(1) << 18U}) {
-        TreeOptions options{.n = 2, .m = 8, .brick_pool_bytes = bytes};
-        Renderer list(volume, ramp(20.0), options);
-        const optics::Image expected = list.render(view);
-        Renderer blocks(volume, ramp(20.0), with_blocks(options));
-        EXPECT_EQ(blocks.render(view).rgba, expected.rgba) << bytes;
+        Settings options{.tree = {.n = 2, .m = 8}, .pools = {.brick_bytes = bytes}};
+        Renderer list = voxel_renderer(volume, ramp(20.0), options);
+        const optics::Image expected = list.render(view).image;
+        Renderer blocks = voxel_renderer(volume, ramp(20.0), with_blocks(options));
+        EXPECT_EQ(blocks.render(view).image.rgba, expected.rgba) << bytes;
     }
 }
 
 TEST_F(TileQueriesTest, BlocksAndFewQueriesServeWindows) {
-    TreeOptions options{.n = 2, .m = 16, .brick_pool_bytes = 8U << 20U};
-    options.max_level = 40;
-    const auto make_deep = [](const TreeOptions& deep) {
-        return Renderer(std::make_unique<renderer::FractalContent>(renderer::tree_shape_of(deep)), deep);
+    Settings options{.tree = {.n = 2, .m = 16}, .pools = {.brick_bytes = 8U << 20U}};
+    options.tree.max_level = 40;
+    const auto make_deep = [](const Settings& deep) {
+        return Renderer(renderer::fractal_content(deep.tree), deep.options());
     };
     View view;
-    view.width = 48;
-    view.height = 36;
+    view.size.width = 48;
+    view.size.height = 36;
     view.anchor = renderer::Tile{30, glm::i64vec3(std::int64_t(1) << 29)};
     view.camera.eye = {0.71, 0.53, 0.62};
     view.camera.target = {0.02, 0.01, 0.03};
     view.light.towards = {0.5, 0.9, 0.35};
-    const optics::Image expected = make_deep(options).render(view);
-    EXPECT_EQ(make_deep(with_blocks(options)).render(view).rgba, expected.rgba);
+    const optics::Image expected = make_deep(options).render(view).image;
+    EXPECT_EQ(make_deep(with_blocks(options)).render(view).image.rgba, expected.rgba);
     for (const int capacity : {1, 5}) {
-        TreeOptions few = options;
-        few.query_capacity = capacity;
-        few.node_pool_bytes = std::size_t(16) << 10U;
-        EXPECT_EQ(make_deep(few).render(view).rgba, expected.rgba) << capacity;
+        Settings few = options;
+        few.march.query_capacity = capacity;
+        few.pools.node_bytes = std::size_t(16) << 10U;
+        EXPECT_EQ(make_deep(few).render(view).image.rgba, expected.rgba) << capacity;
     }
 }
 
 TEST_F(TileQueriesTest, FewQueriesAndFewNodesEndTogether) {
     // One path of nodes from the root to a leaf and a block more, and three bricks.
-    const TreeOptions enough{.n = 2, .m = 8, .max_resolution = 1024, .brick_pool_bytes = 32U << 20U};
-    TreeOptions few = enough;
-    few.node_pool_bytes = std::size_t(9) * 8 * 16;
-    few.brick_pool_bytes = std::size_t(3) * (1000 * 5 + 9 * 8);
-    view_.width = 32;
-    view_.height = 24;
-    view_.pixel_error = 0.5;
-    const optics::Image expected = make(enough).render(view_);
+    const Settings enough{.tree = {.n = 2, .m = 8, .max_resolution = 1024},
+                          .pools = {.brick_bytes = 32U << 20U}};
+    Settings few = enough;
+    few.pools.node_bytes = std::size_t(9) * 8 * 16;
+    few.pools.brick_bytes = std::size_t(3) * (1000 * 5 + 9 * 8);
+    view_.size.width = 32;
+    view_.size.height = 24;
+    view_.detail.pixel_error = 0.5;
+    const optics::Image expected = make(enough).render(view_).image;
     for (const int capacity : {1, 2, 7}) {
-        few.query_capacity = capacity;
+        few.march.query_capacity = capacity;
         Renderer renderer = make(few);
         int passes = 0;
-        EXPECT_EQ(renderer.render(view_, [&](double) { ASSERT_LT(++passes, 20000) << "no end"; }).rgba,
-                  expected.rgba)
-            << capacity;
-        EXPECT_GT(renderer.statistics().nodes_evicted, 0U) << capacity;
-        fmt::print("{} a pass: {} passes, {} bricks, {} nodes evicted\n", capacity,
-                   renderer.statistics().passes, renderer.statistics().bricks_produced,
-                   renderer.statistics().nodes_evicted);
+        const renderer::Frame frame =
+            renderer.render(view_, {.progress = [&](double) { ASSERT_LT(++passes, 20000) << "no end"; }});
+        EXPECT_EQ(frame.image.rgba, expected.rgba) << capacity;
+        EXPECT_GT(frame.statistics.nodes_evicted, 0U) << capacity;
+        fmt::print("{} a pass: {} passes, {} bricks, {} nodes evicted\n", capacity, frame.statistics.passes,
+                   frame.statistics.bricks_produced, frame.statistics.nodes_evicted);
     }
 }
 
 TEST_F(TileQueriesTest, FramesWithinABudgetNeedLists) {
     Renderer blocks = make(with_blocks());
-    EXPECT_THROW((void)blocks.render_within(view_, 10.0), Error);
-    EXPECT_THROW((void)blocks.render_rows_within(view_, {0, 8}, 10.0), Error);
-    EXPECT_THROW((void)blocks.prefetch(view_, 10.0), Error);
-    EXPECT_THROW((void)blocks.prefetch_finer(10.0), Error);
-    EXPECT_EQ(blocks.render(view_).rgba, make().render(view_).rgba);
+    EXPECT_THROW((void)blocks.render(view_, {.budget = Milliseconds(10.0)}), Error);
+    EXPECT_THROW((void)blocks.render(view_, {.rows = renderer::Rows{0, 8}, .budget = Milliseconds(10.0)}),
+                 Error);
+    EXPECT_THROW((void)blocks.prefetch(view_, Milliseconds(10.0)), Error);
+    EXPECT_THROW((void)blocks.prefetch_finer(Milliseconds(10.0)), Error);
+    EXPECT_EQ(blocks.render(view_).image.rgba, make().render(view_).image.rgba);
 }
 
 }  // namespace

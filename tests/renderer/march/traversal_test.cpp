@@ -12,19 +12,20 @@
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
 using renderer::LevelOfDetail;
+using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::Traversal;
-using renderer::TreeOptions;
 using renderer::View;
 
-Renderer make_renderer(const scenes::Scene& scene, const TreeOptions& options) {
-    return Renderer(scene, scenes::take_snapshot(scene), options);
+Renderer make_renderer(const scenes::Scene& scene, const Settings& options) {
+    return voxel_renderer(scene, scenes::take_snapshot(scene), options);
 }
 
 /// How many pixels differ, and which is the first.
@@ -66,10 +67,10 @@ std::vector<View> hard_views(const scenes::Scene& scene) {
     const glm::dvec3 middle = 0.5 * (glm::dvec3(bounds.low) + glm::dvec3(bounds.high));
     const double size = glm::length(glm::dvec3(bounds.high) - glm::dvec3(bounds.low));
     View view;
-    view.width = 101;
-    view.height = 67;
-    view.pixel_error = 0.7;
-    view.camera = optics::framing_camera(bounds, double(view.width) / view.height);
+    view.size.width = 101;
+    view.size.height = 67;
+    view.detail.pixel_error = 0.7;
+    view.camera = optics::framing_camera(bounds, double(view.size.width) / view.size.height);
     std::vector<View> views{view};
     auto add = [&](const glm::dvec3& eye, const glm::dvec3& target, double yfov) {
         View other = view;
@@ -92,68 +93,70 @@ std::vector<View> hard_views(const scenes::Scene& scene) {
     views.back().light.positional = true;
     views.back().light.position = middle + glm::dvec3(0.2, 0.9, 0.1) * size;
     views.front().light.towards = {0.0, 1.0, 0.0};
-    views[1].shadow_pixel_error = 4.0;
-    views[2].shadow_pixel_error = 16.0;
+    views[1].shadow.pixel_error = 4.0;
+    views[2].shadow.pixel_error = 16.0;
     return views;
 }
 
 struct Shape {
     int n, m;
-    LevelOfDetail level_of_detail;
+    LevelOfDetail::Kind level_of_detail;
 };
 
 class Shapes : public GlTest, public ::testing::WithParamInterface<Shape> {
 protected:
-    static TreeOptions options() {
-        return {.n = GetParam().n,
-                .m = GetParam().m,
-                .max_resolution = 1024,
-                .mips = GetParam().level_of_detail == LevelOfDetail::blended,
-                .brick_pool_bytes = 48U << 20U};
+    static Settings options() {
+        return {.tree = {.n = GetParam().n,
+                         .m = GetParam().m,
+                         .max_resolution = 1024,
+                         .mips = GetParam().level_of_detail == LevelOfDetail::Kind::blended},
+                .pools = {.brick_bytes = 48U << 20U}};
     }
     static std::vector<View> views(const scenes::Scene& scene) {
         std::vector<View> views = hard_views(scene);
         for (View& view : views)
-            view.level_of_detail = GetParam().level_of_detail;
+            view.detail.kind = GetParam().level_of_detail;
         return views;
     }
 };
 
 TEST_P(Shapes, EveryTraversalGivesThePictureOfRestarts) {
     const scenes::Scene scene = needles();
-    TreeOptions with = options();
-    with.traversal = Traversal::restart;
+    Settings with = options();
+    with.march.traversal = Traversal::restart;
     Renderer expected = make_renderer(scene, with);
-    with.traversal = Traversal::stackless;
+    with.march.traversal = Traversal::stackless;
     Renderer stackless = make_renderer(scene, with);
-    with.traversal = Traversal::mini_stack;
+    with.march.traversal = Traversal::mini_stack;
     Renderer mini_stack = make_renderer(scene, with);
     const std::vector<View> views = Shapes::views(scene);
     for (std::size_t i = 0; i < views.size(); ++i) {
-        const optics::Image image = expected.render(views[i]);
-        EXPECT_EQ(difference(stackless.render(views[i]), image), "") << "stackless, view " << i;
-        EXPECT_EQ(difference(mini_stack.render(views[i]), image), "") << "mini-stack, view " << i;
+        const optics::Image image = expected.render(views[i]).image;
+        EXPECT_EQ(difference(stackless.render(views[i]).image, image), "") << "stackless, view " << i;
+        EXPECT_EQ(difference(mini_stack.render(views[i]).image, image), "") << "mini-stack, view " << i;
         if (i != 0) continue;
         // Again with rays that also ask for the bricks of the nodes that they pass.
-        EXPECT_EQ(difference(stackless.render_within(views[i], 1e9), image), "") << "stackless";
-        EXPECT_EQ(difference(mini_stack.render_within(views[i], 1e9), image), "") << "mini-stack";
+        EXPECT_EQ(difference(stackless.render(views[i], {.budget = Milliseconds(1e9)}).image, image), "")
+            << "stackless";
+        EXPECT_EQ(difference(mini_stack.render(views[i], {.budget = Milliseconds(1e9)}).image, image), "")
+            << "mini-stack";
     }
 }
 
 TEST_P(Shapes, LateStartsAndEarlyEndsChangeNothing) {
     for (const scenes::Scene& scene : {needles(), ball_over_floor()}) {
-        TreeOptions with = options();
-        with.block_starts = false;
+        Settings with = options();
+        with.march.block_starts = false;
         Renderer plain = make_renderer(scene, with);
-        with.block_starts = true;
+        with.march.block_starts = true;
         Renderer ours = make_renderer(scene, with);
         const std::vector<View> views = Shapes::views(scene);
         std::size_t seen = 0;
         for (std::size_t i = 0; i < views.size(); ++i) {
-            const optics::Image expected = plain.render(views[i]);
+            const optics::Image expected = plain.render(views[i]).image;
             // Cold, then with all that the view shows in the tree, where starts are latest.
-            EXPECT_EQ(difference(ours.render(views[i]), expected), "") << "cold, view " << i;
-            EXPECT_EQ(difference(ours.render(views[i]), expected), "") << "view " << i;
+            EXPECT_EQ(difference(ours.render(views[i]).image, expected), "") << "cold, view " << i;
+            EXPECT_EQ(difference(ours.render(views[i]).image, expected), "") << "view " << i;
             for (std::size_t k = 3; k < expected.rgba.size(); k += 4)
                 seen += expected.rgba[k] != 0 ? 1 : 0;
         }
@@ -163,13 +166,13 @@ TEST_P(Shapes, LateStartsAndEarlyEndsChangeNothing) {
 
 INSTANTIATE_TEST_SUITE_P(
     NAndM, Shapes,
-    ::testing::Values(Shape{4, 16, LevelOfDetail::nearest}, Shape{4, 8, LevelOfDetail::nearest},
-                      Shape{2, 8, LevelOfDetail::nearest}, Shape{2, 32, LevelOfDetail::nearest},
-                      Shape{4, 16, LevelOfDetail::blended}, Shape{4, 8, LevelOfDetail::blended},
-                      Shape{2, 8, LevelOfDetail::blended}, Shape{8, 8, LevelOfDetail::blended}),
+    ::testing::Values(Shape{4, 16, LevelOfDetail::Kind::nearest}, Shape{4, 8, LevelOfDetail::Kind::nearest},
+                      Shape{2, 8, LevelOfDetail::Kind::nearest}, Shape{2, 32, LevelOfDetail::Kind::nearest},
+                      Shape{4, 16, LevelOfDetail::Kind::blended}, Shape{4, 8, LevelOfDetail::Kind::blended},
+                      Shape{2, 8, LevelOfDetail::Kind::blended}, Shape{8, 8, LevelOfDetail::Kind::blended}),
     [](const auto& shape) {
         return fmt::format("N{}M{}{}", shape.param.n, shape.param.m,
-                           shape.param.level_of_detail == LevelOfDetail::blended ? "Blended" : "");
+                           shape.param.level_of_detail == LevelOfDetail::Kind::blended ? "Blended" : "");
     });
 
 class TraversalTest : public GlTest {};
@@ -177,25 +180,26 @@ class TraversalTest : public GlTest {};
 TEST_F(TraversalTest, MoreLevelsThanTheMiniStackHolds) {
     const scenes::Scene scene = needles();
     View view = hard_views(scene)[0];
-    view.width = view.height = 48;
+    view.size.width = view.size.height = 48;
     view.camera.yfov = 0.01;
     view.camera.target = view.camera.target + glm::dvec3(0.02, 0.01, 0.0);
-    view.pixel_error = 0.2;
-    const TreeOptions deep{.n = 2, .m = 8, .max_resolution = 1 << 15, .traversal = Traversal::restart};
-    TreeOptions with = deep;
-    with.traversal = Traversal::mini_stack;
-    const optics::Image expected = make_renderer(scene, deep).render(view);
-    EXPECT_EQ(difference(make_renderer(scene, with).render(view), expected), "");
+    view.detail.pixel_error = 0.2;
+    const Settings deep{.tree = {.n = 2, .m = 8, .max_resolution = 1 << 15},
+                        .march = {.traversal = Traversal::restart}};
+    Settings with = deep;
+    with.march.traversal = Traversal::mini_stack;
+    const optics::Image expected = make_renderer(scene, deep).render(view).image;
+    EXPECT_EQ(difference(make_renderer(scene, with).render(view).image, expected), "");
 }
 
 TEST_F(TraversalTest, RowsAloneStartAsInTheWholePicture) {
     const scenes::Scene scene = scenes::make_builtin("knot");
     View view = hard_views(scene)[0];
     Renderer renderer = make_renderer(scene, {});
-    const optics::Image whole = renderer.render(view);
+    const optics::Image whole = renderer.render(view).image;
     for (const renderer::Rows rows : {renderer::Rows{0, 5}, renderer::Rows{13, 40}, renderer::Rows{66, 1}}) {
-        const optics::Image part = renderer.render_rows(view, rows);
-        const auto* first = whole.rgba.data() + std::size_t(rows.first) * std::size_t(view.width) * 4;
+        const optics::Image part = renderer.render(view, {.rows = rows}).image;
+        const auto* first = whole.rgba.data() + std::size_t(rows.first) * std::size_t(view.size.width) * 4;
         EXPECT_TRUE(std::equal(part.rgba.begin(), part.rgba.end(), first)) << "rows from " << rows.first;
     }
 }
@@ -203,19 +207,19 @@ TEST_F(TraversalTest, RowsAloneStartAsInTheWholePicture) {
 TEST_F(TraversalTest, CoarserShadowRaysShadeAlmostTheSame) {
     const scenes::Scene scene = ball_over_floor();
     View view = hard_views(scene)[0];
-    view.pixel_error = 0.4;
+    view.detail.pixel_error = 0.4;
     view.light.towards = {0.8, 0.5, 0.1};
     Renderer fine = make_renderer(scene, {});
-    const optics::Image expected = fine.render(view);
-    view.shadow_pixel_error = 4.0;
+    const optics::Image expected = fine.render(view).image;
+    view.shadow.pixel_error = 4.0;
     Renderer coarse = make_renderer(scene, {});
-    const optics::Image ours = coarse.render(view);
+    const optics::Image ours = coarse.render(view).image;
     std::size_t different = 0;
     for (std::size_t k = 0; k < ours.rgba.size(); k += 4)
         different += std::abs(int(ours.rgba[k]) - int(expected.rgba[k])) > 32 ? 1 : 0;
     EXPECT_GT(different, 0U) << "shadow rays meet the same voxels";
     EXPECT_LT(different, ours.rgba.size() / 4 / 30);
-    view.shadow_pixel_error = 0.0;
+    view.shadow.pixel_error = 0.0;
     EXPECT_THROW((void)coarse.render(view), Error);
 }
 

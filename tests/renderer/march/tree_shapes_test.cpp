@@ -9,13 +9,14 @@
 #include "tests/support/gl_fixture.h"
 #include "tests/support/march_twin.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
+using renderer::Milliseconds;
 using renderer::Renderer;
-using renderer::TreeOptions;
 using renderer::View;
 
 /// A shape, the resolution it is tried at, and another shape of the same resolution: one dense brick where
@@ -29,18 +30,18 @@ std::string name_of(const ::testing::TestParamInfo<Pair>& pair) {
     return fmt::format("N{}M{}Resolution{}", pair.param.n, pair.param.m, pair.param.resolution);
 }
 
-Renderer make_renderer(const scenes::Scene& scene, const TreeOptions& options) {
-    return Renderer(scene, scenes::take_snapshot(scene), options);
+Renderer make_renderer(const scenes::Scene& scene, const Settings& options) {
+    return voxel_renderer(scene, scenes::take_snapshot(scene), options);
 }
 
 /// Every voxel at the finest level, whatever the distance.
 View finest_view(const scenes::Scene& scene) {
     View view;
-    view.width = 120;
-    view.height = 90;
-    view.camera =
-        optics::framing_camera(scenes::take_snapshot(scene).bounds, double(view.width) / view.height);
-    view.pixel_error = 1e-6;
+    view.size.width = 120;
+    view.size.height = 90;
+    view.camera = optics::framing_camera(scenes::take_snapshot(scene).bounds,
+                                         double(view.size.width) / view.size.height);
+    view.detail.pixel_error = 1e-6;
     return view;
 }
 
@@ -65,8 +66,8 @@ Difference compare(const optics::Image& a, const optics::Image& b, int threshold
 
 class EveryTreeShape : public GlTest, public ::testing::WithParamInterface<Pair> {
 protected:
-    [[nodiscard]] static TreeOptions options() {
-        return {.n = GetParam().n, .m = GetParam().m, .max_resolution = GetParam().resolution};
+    [[nodiscard]] static Settings options() {
+        return {.tree = {.n = GetParam().n, .m = GetParam().m, .max_resolution = GetParam().resolution}};
     }
 };
 
@@ -74,19 +75,20 @@ TEST_P(EveryTreeShape, PictureEqualsTheOneOfAnotherShapeWithTheSameVoxels) {
     const scenes::Scene scene = ball_over_floor();
     View view = finest_view(scene);
     Renderer ours = make_renderer(scene, options());
-    Renderer other = make_renderer(
-        scene, {.n = GetParam().other_n, .m = GetParam().other_m, .max_resolution = GetParam().resolution});
+    Renderer other = make_renderer(scene, {.tree = {.n = GetParam().other_n,
+                                                    .m = GetParam().other_m,
+                                                    .max_resolution = GetParam().resolution}});
     for (const double side : {1.0, -0.6}) {
         const glm::dvec3 away = view.camera.eye - view.camera.target;
         view.camera.eye = view.camera.target + glm::dvec3(side * away.x, away.y, away.z);
-        const optics::Image picture = ours.render(view);
-        const Difference difference = compare(picture, other.render(view), 1);
+        const optics::Image picture = ours.render(view).image;
+        const Difference difference = compare(picture, other.render(view).image, 1);
         // Cells of other sizes round at other places: a ray along an edge may take the voxel on its other
         // side.
         EXPECT_LE(difference.pixels_over, picture.rgba.size() / 4 / 2000) << difference.first;
-        const optics::Image again = ours.render(view);
-        EXPECT_EQ(ours.statistics().bricks_produced, 0U);
-        EXPECT_EQ(picture.rgba, again.rgba);
+        const renderer::Frame again = ours.render(view);
+        EXPECT_EQ(again.statistics.bricks_produced, 0U);
+        EXPECT_EQ(picture.rgba, again.image.rgba);
     }
 }
 
@@ -95,28 +97,29 @@ class ScarceTreeShape : public EveryTreeShape {};
 TEST_P(ScarceTreeShape, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const scenes::Scene scene = ball_over_floor();
     View view = finest_view(scene);
-    view.width = 40;
-    view.height = 30;
-    TreeOptions tight = options();
+    view.size.width = 40;
+    view.size.height = 30;
+    Settings tight = options();
     Renderer roomy = make_renderer(scene, tight);
-    const optics::Image expected = roomy.render(view);
-    const std::size_t side = std::size_t(tight.m) + 2;
-    tight.brick_pool_bytes = 2 * side * side * side * 6;  // two bricks
-    tight.node_pool_bytes = std::size_t(tight.n * tight.n * tight.n) * 16 * 6;
+    const optics::Image expected = roomy.render(view).image;
+    const std::size_t side = std::size_t(tight.tree.m) + 2;
+    tight.pools.brick_bytes = 2 * side * side * side * 6;  // two bricks
+    tight.pools.node_bytes = std::size_t(tight.tree.n * tight.tree.n * tight.tree.n) * 16 * 6;
     Renderer renderer = make_renderer(scene, tight);
-    EXPECT_EQ(renderer.render(view).rgba, expected.rgba);
-    EXPECT_LE(renderer.statistics().bricks_resident, 2U);
+    const renderer::Frame frame = renderer.render(view);
+    EXPECT_EQ(frame.image.rgba, expected.rgba);
+    EXPECT_LE(frame.statistics.bricks_resident, 2U);
 }
 
 TEST_P(ScarceTreeShape, PictureAfterManyShortFramesIsThatOfOneLong) {
     const scenes::Scene scene = ball_over_floor();
     View view = finest_view(scene);
-    const optics::Image expected = make_renderer(scene, options()).render(view);
+    const optics::Image expected = make_renderer(scene, options()).render(view).image;
     Renderer renderer = make_renderer(scene, options());
     for (int frame = 0; frame < 2000; ++frame) {
-        const optics::Image ours = renderer.render_within(view, 30.0);
-        if (!renderer.statistics().converged) continue;
-        EXPECT_EQ(ours.rgba, expected.rgba);
+        const renderer::Frame ours = renderer.render(view, {.budget = Milliseconds(30.0)});
+        if (!ours.statistics.converged) continue;
+        EXPECT_EQ(ours.image.rgba, expected.rgba);
         return;
     }
     FAIL() << "2000 frames did not end with a whole picture";
@@ -147,9 +150,9 @@ TEST_P(TwinOfShape, PictureEqualsThePlainCpuMarchOfTheSameBits) {
     const scenes::Scene scene = ball_over_floor();
     const auto [n, m, resolution] = GetParam();
     const DenseVoxels voxels = dense_voxels(scene, resolution);
-    Renderer renderer = make_renderer(scene, {.n = n, .m = m, .max_resolution = resolution});
+    Renderer renderer = make_renderer(scene, {.tree = {.n = n, .m = m, .max_resolution = resolution}});
     const View view = finest_view(scene);
-    const optics::Image ours = renderer.render(view);
+    const optics::Image ours = renderer.render(view).image;
     // As in renderer_test: float against double, where a threshold is crossed.
     const Difference difference = compare(ours, march_dense(voxels, view), 2);
     EXPECT_LE(difference.pixels_over, ours.rgba.size() / 4 / 200) << difference.first;

@@ -13,16 +13,18 @@
 #include "tests/support/gl_fixture.h"
 #include "tests/support/volume_scenes.h"
 #include "tests/support/volume_twin.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
+using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::TransferFunction;
 using renderer::View;
 
-constexpr renderer::TreeOptions small_pool{.brick_pool_bytes = 8U << 20U};
+constexpr Settings small_pool{.pools = {.brick_bytes = 8U << 20U}};
 
 class VolumeLight : public GlTest {};
 
@@ -41,8 +43,8 @@ struct LightError {
 LightError light_error(const optics::Image& image, const View& view, double radius, double albedo) {
     LightError error;
     const glm::dvec3 light = glm::normalize(view.light.towards);
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
             const glm::dvec3 direction = pixel_direction(view, x, y);
             const double along = -glm::dot(view.camera.eye, direction);
             const double past = glm::length(glm::cross(view.camera.eye, direction));
@@ -51,7 +53,7 @@ LightError light_error(const optics::Image& image, const View& view, double radi
                 view.camera.eye + direction * (along - std::sqrt(radius * radius - past * past));
             const double expected = albedo * std::max(glm::dot(glm::normalize(point), light), 0.0);
             const double off =
-                std::abs(linear_of(image.rgba[std::size_t(4 * (y * view.width + x))]) - expected);
+                std::abs(linear_of(image.rgba[std::size_t(4 * (y * view.size.width + x))]) - expected);
             error.worst = std::max(error.worst, off);
             error.mean += off;
             ++error.count;
@@ -77,7 +79,7 @@ TEST_F(VolumeLight, SmoothBallIsLitAsItsNormalsSay) {
     const TransferFunction opaque(
         {{0.0, glm::dvec3(0.5), 0.0}, {0.49, glm::dvec3(0.5), 0.0}, {0.5, glm::dvec3(0.5), 500.0}});
     const LightError error =
-        light_error(Renderer(ball, opaque, small_pool).render(lit_view()), lit_view(), 0.7, 0.5);
+        light_error(voxel_renderer(ball, opaque, small_pool).render(lit_view()).image, lit_view(), 0.7, 0.5);
     ASSERT_GT(error.count, 200);
     EXPECT_LT(error.mean, 0.004);
     EXPECT_LT(error.worst, 0.02);
@@ -88,7 +90,7 @@ TEST_F(VolumeLight, BallWithASharpSideIsLitLessExactly) {
     const auto ball = std::make_shared<renderer::HollowSphere>(4, 256, 0.0, 0.4);
     const TransferFunction opaque({{0.0, glm::dvec3(0.5), 0.0}, {1.0, glm::dvec3(0.5), 500.0}});
     const LightError error =
-        light_error(Renderer(ball, opaque, small_pool).render(lit_view()), lit_view(), 0.8, 0.5);
+        light_error(voxel_renderer(ball, opaque, small_pool).render(lit_view()).image, lit_view(), 0.8, 0.5);
     ASSERT_GT(error.count, 200);
     EXPECT_LT(error.mean, 0.02);
     EXPECT_LT(error.worst, 0.1);
@@ -119,20 +121,20 @@ TEST_F(VolumeLight, FogTakesOfTheLightWhatItsThicknessSays) {
                                      {0.9, glm::dvec3(1.0), sigma},
                                      {1.0, glm::dvec3(1.0), 50.0}});
     View view;
-    view.width = 32;
-    view.height = 24;
+    view.size.width = 32;
+    view.size.height = 24;
     // Between floor and fog, looking down.
     view.camera = {{32.0, 30.0, 32.0}, {32.0, 8.0, 33.0}, {0, 0, 1}, 0.5};
-    view.pixel_error = 1e-6;
+    view.detail.pixel_error = 1e-6;
     view.light.ambient = 0.0F;
     for (const glm::dvec3 towards : {glm::dvec3(0, 1, 0), glm::dvec3(0.3, 1, 0.2)}) {
         view.light.towards = towards;
-        view.shadow = renderer::Shadow::none;
-        const optics::Image lit = Renderer(volume, transfer, small_pool).render(view);
-        view.shadow = renderer::Shadow::hard;
-        const optics::Image shadowed = Renderer(volume, transfer, small_pool).render(view);
+        view.shadow.kind = renderer::ShadowQuality::Kind::none;
+        const optics::Image lit = voxel_renderer(volume, transfer, small_pool).render(view).image;
+        view.shadow.kind = renderer::ShadowQuality::Kind::hard;
+        const optics::Image shadowed = voxel_renderer(volume, transfer, small_pool).render(view).image;
         const double expected = std::exp(-sigma * 16.0 / glm::normalize(towards).y);
-        for (int i = 0; i < view.width * view.height; ++i) {
+        for (int i = 0; i < view.size.width * view.size.height; ++i) {
             const double ratio =
                 linear_of(shadowed.rgba[std::size_t(4 * i)]) / linear_of(lit.rgba[std::size_t(4 * i)]);
             ASSERT_NEAR(ratio, expected, 0.012)
@@ -145,12 +147,12 @@ TEST_F(VolumeLight, WhatIsOpaqueStopsTheLight) {
     const scenes::Volume volume = fog_over_floor();
     const TransferFunction transfer({{0.0, glm::dvec3(1.0), 0.0}, {0.5, glm::dvec3(1.0), 10.0}});
     View view;
-    view.width = 16;
-    view.height = 12;
+    view.size.width = 16;
+    view.size.height = 12;
     view.camera = {{32.0, 30.0, 32.0}, {32.0, 8.0, 33.0}, {0, 0, 1}, 0.5};
-    view.pixel_error = 1e-6;
+    view.detail.pixel_error = 1e-6;
     view.light = {.towards = {0.1, 1, 0}, .ambient = 0.0F};
-    const optics::Image image = Renderer(volume, transfer, small_pool).render(view);
+    const optics::Image image = voxel_renderer(volume, transfer, small_pool).render(view).image;
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
         ASSERT_EQ(image.rgba[i], 0) << "pixel " << i / 4;
         ASSERT_EQ(image.rgba[i + 3], 255) << "pixel " << i / 4;
@@ -158,17 +160,17 @@ TEST_F(VolumeLight, WhatIsOpaqueStopsTheLight) {
     // A lamp between the floor and the layer is not in its shadow.
     view.light.positional = true;
     view.light.position = {32.0, 36.0, 32.0};
-    const optics::Image lamp = Renderer(volume, transfer, small_pool).render(view);
+    const optics::Image lamp = voxel_renderer(volume, transfer, small_pool).render(view).image;
     EXPECT_GT(lamp.rgba[std::size_t(4 * (6 * 16 + 8))], 128);
 }
 
 /// Looks from between the floor of fog_over_floor() and what hangs over it, straight down.
 View view_of_the_floor() {
     View view;
-    view.width = 32;
-    view.height = 24;
+    view.size.width = 32;
+    view.size.height = 24;
     view.camera = {{32.0, 30.0, 32.0}, {32.0, 8.0, 32.0}, {0, 0, 1}, 1.0};
-    view.pixel_error = 1e-6;
+    view.detail.pixel_error = 1e-6;
     view.light.positional = true;
     view.light.position = {32.0, 56.0, 32.0};
     view.light.ambient = 0.0F;
@@ -178,9 +180,9 @@ View view_of_the_floor() {
 /// Light that arrives at each pixel of the floor, as a share of what would without a shadow.
 std::vector<double> shares_on_the_floor(const scenes::Volume& volume, const TransferFunction& transfer,
                                         View view) {
-    const optics::Image shadowed = Renderer(volume, transfer, small_pool).render(view);
-    view.shadow = renderer::Shadow::none;
-    const optics::Image lit = Renderer(volume, transfer, small_pool).render(view);
+    const optics::Image shadowed = voxel_renderer(volume, transfer, small_pool).render(view).image;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
+    const optics::Image lit = voxel_renderer(volume, transfer, small_pool).render(view).image;
     std::vector<double> shares;
     for (std::size_t i = 0; i < lit.rgba.size(); i += 4)
         shares.push_back(linear_of(shadowed.rgba[i]) / linear_of(lit.rgba[i]));
@@ -201,12 +203,12 @@ TEST_F(VolumeLight, PenumbraOfAnEdgeInAVolumeComesToTheClosedForm) {
     view.light.shape = optics::LightShape::rectangle;
     view.light.half_u = {6.0, 0.0, 0.0};
     view.light.half_v = {0.0, 0.0, 3.0};
-    view.shadow_rays = 256;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 256};
     const std::vector<double> shares = shares_on_the_floor(volume, transfer, view);
     int penumbra = 0;
     double squares = 0.0;
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
             const glm::dvec3 direction = pixel_direction(view, x, y);
             const double at = view.camera.eye.x + direction.x * (8.0 - 30.0) / direction.y;
             // From a point of the floor, what of the light lies left of the plate's two edges is hidden.
@@ -215,7 +217,7 @@ TEST_F(VolumeLight, PenumbraOfAnEdgeInAVolumeComesToTheClosedForm) {
                 const double edge = at + (32.0 - at) * (56.0 - 8.0) / (height - 8.0);
                 hidden = std::max(hidden, std::clamp((edge - 26.0) / 12.0, 0.0, 1.0));
             }
-            const double share = shares[std::size_t(y * view.width + x)];
+            const double share = shares[std::size_t(y * view.size.width + x)];
             squares += (share - (1.0 - hidden)) * (share - (1.0 - hidden));
             if (hidden < 0.02 || hidden > 0.98) continue;
             ++penumbra;
@@ -238,10 +240,10 @@ TEST_F(VolumeLight, SoftLightThroughFogIsTheMeanOfWhatIsLeftOfIt) {
     view.light.shape = optics::LightShape::disk;
     view.light.half_u = {30.0, 0.0, 0.0};
     view.light.half_v = {0.0, 0.0, 30.0};
-    view.shadow_rays = 64;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 64};
     const std::vector<double> shares = shares_on_the_floor(fog_over_floor(), transfer, view);
-    for (int y = 0; y < view.height; y += 3) {
-        for (int x = 0; x < view.width; x += 3) {
+    for (int y = 0; y < view.size.height; y += 3) {
+        for (int x = 0; x < view.size.width; x += 3) {
             const glm::dvec3 direction = pixel_direction(view, x, y);
             const glm::dvec3 point = view.camera.eye + direction * (8.0 - 30.0) / direction.y;
             double sum = 0.0;
@@ -253,7 +255,7 @@ TEST_F(VolumeLight, SoftLightThroughFogIsTheMeanOfWhatIsLeftOfIt) {
                                        32.0 + radius * std::sin(angle));
                 sum += std::exp(-sigma * 16.0 * glm::distance(there, point) / (60.0 - 8.0));
             }
-            EXPECT_NEAR(shares[std::size_t(y * view.width + x)], sum / (steps * steps), 0.012)
+            EXPECT_NEAR(shares[std::size_t(y * view.size.width + x)], sum / (steps * steps), 0.012)
                 << "pixel (" << x << ", " << y << ")";
         }
     }
@@ -263,26 +265,27 @@ TEST_F(VolumeLight, SoftShadowIsTheSameFromTinyPoolsAndWithinABudget) {
     const scenes::Volume volume = blobs(glm::ivec3(96), 40);
     const TransferFunction transfer = ramp(20.0);
     View view;
-    view.width = 40;
-    view.height = 30;
+    view.size.width = 40;
+    view.size.height = 30;
     view.camera = optics::framing_camera({glm::dvec3(-1.0), glm::dvec3(1.0)}, 4.0 / 3.0);
-    view.pixel_error = 0.3;  // 96 voxels on 40 pixels
+    view.detail.pixel_error = 0.3;  // 96 voxels on 40 pixels
     view.light.angle = 0.2;
-    view.shadow_rays = 8;
-    Renderer roomy(volume, transfer, small_pool);
-    const optics::Image expected = roomy.render(view);
-    Renderer scarce(volume, transfer, {.brick_pool_bytes = 1U << 18U});
-    EXPECT_EQ(scarce.render(view).rgba, expected.rgba);
-    EXPECT_GT(scarce.statistics().bricks_evicted, 0U);
-    Renderer hurried(volume, transfer, small_pool);
-    optics::Image image = hurried.render_within(view, 0.0);
-    for (int frame = 0; frame < 2000 && !hurried.statistics().converged; ++frame)
-        image = hurried.render_within(view, 0.0);
-    EXPECT_TRUE(hurried.statistics().converged);
-    EXPECT_EQ(image.rgba, expected.rgba);
-    view.shadow_rays = 1;
-    EXPECT_NE(roomy.render(view).rgba, expected.rgba);
-    view.shadow_cones = true;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 8};
+    Renderer roomy = voxel_renderer(volume, transfer, small_pool);
+    const optics::Image expected = roomy.render(view).image;
+    Renderer scarce = voxel_renderer(volume, transfer, {.pools = {.brick_bytes = 1U << 18U}});
+    const renderer::Frame scarce_frame = scarce.render(view);
+    EXPECT_EQ(scarce_frame.image.rgba, expected.rgba);
+    EXPECT_GT(scarce_frame.statistics.bricks_evicted, 0U);
+    Renderer hurried = voxel_renderer(volume, transfer, small_pool);
+    renderer::Frame refined = hurried.render(view, {.budget = Milliseconds(0.0)});
+    for (int frame = 0; frame < 2000 && !refined.statistics.converged; ++frame)
+        refined = hurried.render(view, {.budget = Milliseconds(0.0)});
+    EXPECT_TRUE(refined.statistics.converged);
+    EXPECT_EQ(refined.image.rgba, expected.rgba);
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 1};
+    EXPECT_NE(roomy.render(view).image.rgba, expected.rgba);
+    view.shadow.kind = renderer::ShadowQuality::Kind::cones;
     EXPECT_THROW((void)roomy.render(view), Error);
 }
 

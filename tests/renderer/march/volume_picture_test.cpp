@@ -11,6 +11,7 @@
 #include "tests/support/gl_fixture.h"
 #include "tests/support/volume_scenes.h"
 #include "tests/support/volume_twin.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
@@ -18,16 +19,16 @@ namespace {
 using optics::Image;
 using renderer::DenseField;
 using renderer::HollowSphere;
+using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::TransferFunction;
-using renderer::TreeOptions;
 using renderer::View;
 using renderer::VolumeOptions;
 
 constexpr VolumeOptions fog{.full_gradient = 0.0};
 
 /// Enough for the views here, and quick to make.
-constexpr TreeOptions small_pool{.brick_pool_bytes = 8U << 20U};
+constexpr Settings small_pool{.pools = {.brick_bytes = 8U << 20U}};
 
 class VolumePictures : public GlTest {};
 class VolumeTrees : public GlTest, public ::testing::WithParamInterface<std::pair<int, int>> {};
@@ -36,14 +37,15 @@ TEST_P(VolumeTrees, PictureEqualsAPlainMarchInDouble) {
     const auto [n, m] = GetParam();
     const scenes::Volume volume = blobs({40, 33, 47}, 1);
     const TransferFunction transfer = ramp(20.0);
-    Renderer renderer(volume, transfer, {.n = n, .m = m, .brick_pool_bytes = 8U << 20U}, fog);
+    Renderer renderer = voxel_renderer(volume, transfer,
+                                       {.tree = {.n = n, .m = m}, .pools = {.brick_bytes = 8U << 20U}}, fog);
     const Densities densities = densities_of(DenseField(volume, n), 64);
     View view = glowing_view(volume.bounds(), 48, 40);
     for (const glm::dvec3 direction :
          {glm::dvec3(0.55, 0.45, 1.0), glm::dvec3(-1.0, 0.2, 0.1), glm::dvec3(0, 0.6, -1)}) {
         view.camera.eye = view.camera.target + glm::normalize(direction) * 4.0;
         const PictureDifference difference =
-            difference_of(renderer.render(view), march_densities(densities, transfer, view));
+            difference_of(renderer.render(view).image, march_densities(densities, transfer, view));
         // A density that bends along a step is taken for straight; half a step of 8 bits on either side.
         EXPECT_LE(difference.largest, 2) << difference.worst;
     }
@@ -54,10 +56,15 @@ TEST_P(VolumeTrees, PictureFromBricksEqualsTheOneFromADenseTexture) {
     const scenes::Volume volume = blobs(glm::ivec3(64), 2, 20);
     const View view = glowing_view(volume.bounds(), 96, 72);
     const optics::Image dense =
-        Renderer(volume, ramp(20.0), {.n = n, .m = 64, .brick_pool_bytes = 8U << 20U}, fog).render(view);
-    Renderer bricks(volume, ramp(20.0), {.n = n, .m = m, .brick_pool_bytes = 8U << 20U}, fog);
-    const PictureDifference difference = difference_of(bricks.render(view), dense);
-    EXPECT_GT(bricks.statistics().bricks_produced, 1U);
+        voxel_renderer(volume, ramp(20.0), {.tree = {.n = n, .m = 64}, .pools = {.brick_bytes = 8U << 20U}},
+                       fog)
+            .render(view)
+            .image;
+    Renderer bricks = voxel_renderer(volume, ramp(20.0),
+                                     {.tree = {.n = n, .m = m}, .pools = {.brick_bytes = 8U << 20U}}, fog);
+    const renderer::Frame ours = bricks.render(view);
+    const PictureDifference difference = difference_of(ours.image, dense);
+    EXPECT_GT(ours.statistics.bricks_produced, 1U);
     EXPECT_LE(difference.largest, 1) << difference.worst;
 }
 
@@ -75,21 +82,22 @@ TEST_P(VolumeTrees, BordersBetweenLevelsDoNotShow) {
     const TransferFunction transfer({{0.0, {1.0, 0.0, 0.2}, 4.0}, {1.0, {0.0, 1.0, 0.2}, 5.0}});
     View view = glowing_view(slope.bounds(), 64, 48);
     view.camera = {{-0.1, 0.05, -0.9}, {0.1, 0.0, 1.0}, {0, 1, 0}, 0.5};
-    const TreeOptions dense_options{.n = n, .m = 64, .brick_pool_bytes = 8U << 20U};
-    const optics::Image dense = Renderer(slope, transfer, dense_options, fog).render(view);
+    const Settings dense_options{.tree = {.n = n, .m = 64}, .pools = {.brick_bytes = 8U << 20U}};
+    const optics::Image dense = voxel_renderer(slope, transfer, dense_options, fog).render(view).image;
     view.show = renderer::Show::levels;
-    Renderer renderer(slope, transfer, {.n = n, .m = m, .brick_pool_bytes = 8U << 20U}, fog);
+    Renderer renderer =
+        voxel_renderer(slope, transfer, {.tree = {.n = n, .m = m}, .pools = {.brick_bytes = 8U << 20U}}, fog);
     bool mixed = false;  // pixels that show more than one level have a mixed colour
     for (const double pixel_error : {3.0, 2.0, 4.0, 1.5, 6.0, 8.0}) {
         if (mixed) break;
-        view.pixel_error = pixel_error;
-        const optics::Image levels = renderer.render(view);
+        view.detail.pixel_error = pixel_error;
+        const optics::Image levels = renderer.render(view).image;
         for (std::size_t i = 4; i < levels.rgba.size(); i += 4)
             mixed = mixed || levels.rgba[i] != levels.rgba[0] || levels.rgba[i + 1] != levels.rgba[1];
     }
     EXPECT_TRUE(mixed) << "only one level is in view";
     view.show = renderer::Show::surface;
-    const PictureDifference difference = difference_of(renderer.render(view), dense);
+    const PictureDifference difference = difference_of(renderer.render(view).image, dense);
     EXPECT_LE(difference.largest, 1) << difference.worst;
 }
 
@@ -98,16 +106,18 @@ TEST_P(VolumeTrees, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const scenes::Volume volume = blobs(glm::ivec3(64), 3, 20);
     View view = glowing_view(volume.bounds());
     view.light = {};
-    view.shadow = renderer::Shadow::hard;
-    Renderer roomy(volume, ramp(20.0), {.n = n, .m = m, .brick_pool_bytes = 8U << 20U});
-    const optics::Image expected = roomy.render(view);
+    view.shadow.kind = renderer::ShadowQuality::Kind::hard;
+    Renderer roomy =
+        voxel_renderer(volume, ramp(20.0), {.tree = {.n = n, .m = m}, .pools = {.brick_bytes = 8U << 20U}});
+    const optics::Image expected = roomy.render(view).image;
     const std::size_t side = std::size_t(m) + 2;
-    const TreeOptions tight_options{
-        .n = n, .m = m, .node_pool_bytes = 9 * 64 * 16, .brick_pool_bytes = 3 * side * side * side};
-    Renderer tight(volume, ramp(20.0), tight_options);
-    EXPECT_EQ(tight.render(view).rgba, expected.rgba);
-    EXPECT_GT(tight.statistics().bricks_evicted, 0U);
-    EXPECT_LE(tight.statistics().brick_pool_bytes, tight_options.brick_pool_bytes);
+    const Settings tight_options{.tree = {.n = n, .m = m},
+                                 .pools = {.node_bytes = 9 * 64 * 16, .brick_bytes = 3 * side * side * side}};
+    Renderer tight = voxel_renderer(volume, ramp(20.0), tight_options);
+    const renderer::Frame frame = tight.render(view);
+    EXPECT_EQ(frame.image.rgba, expected.rgba);
+    EXPECT_GT(frame.statistics.bricks_evicted, 0U);
+    EXPECT_LE(frame.statistics.brick_pool_bytes, tight_options.pools.brick_bytes);
 }
 
 INSTANTIATE_TEST_SUITE_P(NAndM, VolumeTrees,
@@ -122,20 +132,20 @@ TEST_F(VolumePictures, UniformBallLetsThroughWhatItsChordSays) {
     const auto ball = std::make_shared<HollowSphere>(4, 256, 0.0, 0.5 * radius);
     const double sigma = 1.7;
     const TransferFunction transfer({{0.0, glm::dvec3(1.0), 0.0}, {1.0, glm::dvec3(1.0), sigma}});
-    Renderer renderer(ball, transfer, small_pool, fog);
+    Renderer renderer = voxel_renderer(ball, transfer, small_pool, fog);
     const View view = glowing_view({glm::dvec3(-1.0), glm::dvec3(1.0)});
-    const optics::Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view).image;
     const double voxel = 2.0 / 256.0;
     int looked_at = 0;
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
             const glm::dvec3 direction = pixel_direction(view, x, y);
             const double past = glm::length(glm::cross(view.camera.eye, direction));
             if (past > radius - 4.0 * voxel && past < radius + 2.0 * voxel)
                 continue;  // its side is a voxel wide
             const double chord = past < radius ? 2.0 * std::sqrt(radius * radius - past * past) : 0.0;
             const double expected = 255.0 * (1.0 - std::exp(-sigma * chord));
-            const int alpha = image.rgba[std::size_t(4 * (y * view.width + x) + 3)];
+            const int alpha = image.rgba[std::size_t(4 * (y * view.size.width + x) + 3)];
             ASSERT_NEAR(alpha, expected, 1.0) << fmt::format("pixel ({}, {}), chord {}", x, y, chord);
             looked_at += past < radius ? 1 : 0;
         }
@@ -151,7 +161,7 @@ TEST_F(VolumePictures, EightTimesFinerStepsChangeOpacityByLessThanAHundredth) {
     const auto opacity = [&](const std::shared_ptr<const renderer::Field>& field, double extinction,
                              int steps) {
         const VolumeOptions options{.steps_per_voxel = steps, .full_gradient = 0.0};
-        return Renderer(field, ramp(extinction), small_pool, options).render(view);
+        return voxel_renderer(field, ramp(extinction), small_pool, options).render(view).image;
     };
     for (const bool sharp : {true, false}) {
         const std::shared_ptr<const renderer::Field> field =
@@ -170,7 +180,8 @@ TEST_F(VolumePictures, EightTimesFinerStepsChangeOpacityByLessThanAHundredth) {
 TEST_F(VolumePictures, CamerasInsideOnFacesAndFarAwaySeeWhatAPlainMarchSees) {
     const scenes::Volume volume = blobs(glm::ivec3(32), 5);
     const TransferFunction transfer = ramp(8.0);
-    Renderer renderer(volume, transfer, {.n = 2, .m = 8, .brick_pool_bytes = 8U << 20U}, fog);
+    Renderer renderer = voxel_renderer(volume, transfer,
+                                       {.tree = {.n = 2, .m = 8}, .pools = {.brick_bytes = 8U << 20U}}, fog);
     const Densities densities = densities_of(DenseField(volume, 2), 32);
     View view = glowing_view(volume.bounds(), 40, 30);
     const double voxel = 2.0 / 32.0;
@@ -189,7 +200,7 @@ TEST_F(VolumePictures, CamerasInsideOnFacesAndFarAwaySeeWhatAPlainMarchSees) {
          }) {
         view.camera = {place.eye, place.target, {0, 1, 0}, place.yfov};
         const PictureDifference difference =
-            difference_of(renderer.render(view), march_densities(densities, transfer, view));
+            difference_of(renderer.render(view).image, march_densities(densities, transfer, view));
         EXPECT_LE(difference.largest, 2) << place.name << ": " << difference.worst;
     }
 }
@@ -198,8 +209,8 @@ TEST_F(VolumePictures, OpacityDoesNotDependOnTheSceneScale) {
     scenes::Volume volume = blobs(glm::ivec3(48), 6);
     View view = glowing_view(volume.bounds());
     view.light = {};
-    view.shadow = renderer::Shadow::hard;
-    const optics::Image expected = Renderer(volume, ramp(20.0), small_pool).render(view);
+    view.shadow.kind = renderer::ShadowQuality::Kind::hard;
+    const optics::Image expected = voxel_renderer(volume, ramp(20.0), small_pool).render(view).image;
     for (const double scale : {1000.0, 1.0 / 1024.0}) {
         scenes::Volume scaled = volume;
         scaled.spacing *= scale;
@@ -207,7 +218,8 @@ TEST_F(VolumePictures, OpacityDoesNotDependOnTheSceneScale) {
         View from_there = view;
         from_there.camera.eye *= scale;
         from_there.camera.target *= scale;
-        const optics::Image image = Renderer(scaled, ramp(20.0 / scale), small_pool).render(from_there);
+        const optics::Image image =
+            voxel_renderer(scaled, ramp(20.0 / scale), small_pool).render(from_there).image;
         const PictureDifference difference = difference_of(image, expected);
         EXPECT_LE(difference.largest, 1) << "scale " << scale << ": " << difference.worst;
     }
@@ -216,19 +228,22 @@ TEST_F(VolumePictures, OpacityDoesNotDependOnTheSceneScale) {
 TEST_F(VolumePictures, FramesWithinABudgetEndWithTheWholePicture) {
     const scenes::Volume volume = blobs(glm::ivec3(64), 7);
     View view = glowing_view(volume.bounds());
-    view.shadow = renderer::Shadow::hard;
+    view.shadow.kind = renderer::ShadowQuality::Kind::hard;
     view.light = {};
     const optics::Image expected =
-        Renderer(volume, ramp(20.0), {.m = 8, .brick_pool_bytes = 8U << 20U}).render(view);
-    Renderer renderer(volume, ramp(20.0), {.m = 8, .brick_pool_bytes = 8U << 20U});
-    optics::Image image;
+        voxel_renderer(volume, ramp(20.0), {.tree = {.m = 8}, .pools = {.brick_bytes = 8U << 20U}})
+            .render(view)
+            .image;
+    Renderer renderer =
+        voxel_renderer(volume, ramp(20.0), {.tree = {.m = 8}, .pools = {.brick_bytes = 8U << 20U}});
+    renderer::Frame frame;
     int frames = 0;
     do {
-        image = renderer.render_within(view, 0.0);
+        frame = renderer.render(view, {.budget = Milliseconds(0.0)});
         ASSERT_LT(++frames, 1000);
-    } while (!renderer.statistics().converged);
+    } while (!frame.statistics.converged);
     EXPECT_GT(frames, 1);
-    EXPECT_EQ(image.rgba, expected.rgba);
+    EXPECT_EQ(frame.image.rgba, expected.rgba);
 }
 
 // Crassin et al. 2008, section 7: what a view costs does not grow with what is not seen.
@@ -238,11 +253,12 @@ TEST_F(VolumePictures, BricksOfAViewDoNotGrowWithTheVirtualResolution) {
     for (const int copies : {32, 128, 512}) {  // 2048^3 to 32768^3 voxels
         const auto field = std::make_shared<renderer::RepeatedField>(tile, copies);
         View view = glowing_view({glm::dvec3(-1.0), glm::dvec3(2.0 * copies - 1.0)}, 96, 72);
-        view.pixel_error = 1.0;
-        Renderer renderer(field, ramp(4.0 / copies, 0.0),
-                          {.max_resolution = 1 << 17, .brick_pool_bytes = 32U << 20U}, fog);
-        (void)renderer.render(view);
-        const std::uint64_t bricks = renderer.statistics().bricks_produced;
+        view.detail.pixel_error = 1.0;
+        Renderer renderer =
+            voxel_renderer(field, ramp(4.0 / copies, 0.0),
+                           {.tree = {.max_resolution = 1 << 17}, .pools = {.brick_bytes = 32U << 20U}}, fog);
+        const renderer::Frame frame = renderer.render(view);
+        const std::uint64_t bricks = frame.statistics.bricks_produced;
         if (expected == 0) expected = bricks;
         EXPECT_GT(bricks, 10U) << copies << " copies";
         EXPECT_LE(bricks, expected * 11 / 10) << copies << " copies";
@@ -261,11 +277,16 @@ TEST_F(VolumePictures, CopiesLookAsTheyDoSideBySideInMemory) {
     const auto copies = std::make_shared<renderer::RepeatedField>(std::make_shared<DenseField>(one, 2), 4);
     View view = glowing_view(eight.bounds(), 96, 72);
     for (const double pixel_error : {1e-6, 1.0, 4.0}) {
-        view.pixel_error = pixel_error;
+        view.detail.pixel_error = pixel_error;
         const optics::Image expected =
-            Renderer(eight, ramp(20.0), {.n = 2, .m = 8, .brick_pool_bytes = 8U << 20U}).render(view);
+            voxel_renderer(eight, ramp(20.0), {.tree = {.n = 2, .m = 8}, .pools = {.brick_bytes = 8U << 20U}})
+                .render(view)
+                .image;
         const optics::Image image =
-            Renderer(copies, ramp(20.0), {.n = 2, .m = 8, .brick_pool_bytes = 8U << 20U}).render(view);
+            voxel_renderer(copies, ramp(20.0),
+                           {.tree = {.n = 2, .m = 8}, .pools = {.brick_bytes = 8U << 20U}})
+                .render(view)
+                .image;
         // Means of 16-bit means, rounded in other places.
         const PictureDifference difference = difference_of(image, expected);
         EXPECT_LE(difference.largest, 1) << "pixel error " << pixel_error << ": " << difference.worst;

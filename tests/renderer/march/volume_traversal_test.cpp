@@ -7,6 +7,7 @@
 #include "renderer/renderer.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/volume_scenes.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 using optics::Image;
 using renderer::Renderer;
 using renderer::Traversal;
-using renderer::TreeOptions;
 
 scenes::Volume dots(int side, int count, unsigned seed) {
     scenes::Volume volume = blobs(glm::ivec3(side), seed, 0);
@@ -29,21 +29,21 @@ class VolumeTraversal : public GlTest {};
 TEST_F(VolumeTraversal, TilesWithoutFullChildrenHideNothingBehindThem) {
     const scenes::Volume volume = dots(128, 10, 4);
     renderer::View view = glowing_view(volume.bounds(), 64, 64);
-    view.pixel_error = 0.25;
+    view.detail.pixel_error = 0.25;
     for (const int n : {2, 4}) {
         for (const bool block_starts : {false, true}) {
             optics::Image expected;
             for (const Traversal traversal :
                  {Traversal::restart, Traversal::stackless, Traversal::mini_stack}) {
-                TreeOptions options{.n = n, .m = 8, .brick_pool_bytes = 8U << 20U};
-                options.traversal = traversal;
-                options.block_starts = block_starts;
-                Renderer renderer(volume, ramp(400.0, 0.01), options);
-                const optics::Image first = renderer.render(view);
+                Settings options{.tree = {.n = n, .m = 8}, .pools = {.brick_bytes = 8U << 20U}};
+                options.march.traversal = traversal;
+                options.march.block_starts = block_starts;
+                Renderer renderer = voxel_renderer(volume, ramp(400.0, 0.01), options);
+                const optics::Image first = renderer.render(view).image;
                 if (expected.rgba.empty()) expected = first;
                 EXPECT_EQ(first.rgba, expected.rgba) << "n " << n << ", traversal " << int(traversal);
                 renderer.forget_picture();
-                EXPECT_EQ(renderer.render(view).rgba, expected.rgba)
+                EXPECT_EQ(renderer.render(view).image.rgba, expected.rgba)
                     << "n " << n << ", traversal " << int(traversal) << ", a second time";
             }
         }

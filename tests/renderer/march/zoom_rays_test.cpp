@@ -16,6 +16,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "renderer/produce/fractal_content.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/probe.h"

@@ -13,10 +13,12 @@
 #include "tests/support/mesh_mix_pictures.h"
 #include "tests/support/mesh_rays.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
+using renderer::Milliseconds;
 using renderer::Mix;
 
 class MeshMix : public GlTest {};
@@ -27,25 +29,27 @@ void expect_depth_order(const scenes::Scene& scene, const scenes::Scene& mesh, c
                         int resolution) {
     Renderer renderer = voxels_of(scene, resolution);
     renderer.set_mix({.meshes = raster(mesh)});
-    const optics::Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view).image;
     const optics::Camera& camera = view.camera;
     const scenes::Snapshot scene_now = scenes::take_snapshot(scene);
     const scenes::Snapshot mesh_now = scenes::take_snapshot(mesh);
-    const auto voxels = reference::ImageTracer(scene, scene_now).trace(camera, {}, view.width, view.height);
-    const auto faces = reference::ImageTracer(mesh, mesh_now).trace(camera, {}, view.width, view.height);
+    const auto voxels =
+        reference::ImageTracer(scene, scene_now).trace(camera, {}, view.size.width, view.size.height);
+    const auto faces =
+        reference::ImageTracer(mesh, mesh_now).trace(camera, {}, view.size.width, view.size.height);
     const auto of_mesh = [&](int x, int y) {
-        const auto i = std::size_t(y * view.width + x);
+        const auto i = std::size_t(y * view.size.width + x);
         return faces.depth[i] < voxels.depth[i];
     };
     const double margin = 2.0 * voxel_side(scene, resolution);
     int shown[2] = {0, 0};
-    for (int y = 2; y < view.height - 2; ++y) {
-        for (int x = 2; x < view.width - 2; ++x) {
-            const auto i = std::size_t(y * view.width + x);
+    for (int y = 2; y < view.size.height - 2; ++y) {
+        for (int x = 2; x < view.size.width - 2; ++x) {
+            const auto i = std::size_t(y * view.size.width + x);
             bool sure = std::abs(double(faces.depth[i]) - double(voxels.depth[i])) > margin;
             for (int dy = -2; dy <= 2; ++dy) {
                 for (int dx = -2; dx <= 2; ++dx) {
-                    const auto j = std::size_t((y + dy) * view.width + x + dx);
+                    const auto j = std::size_t((y + dy) * view.size.width + x + dx);
                     sure = sure && of_mesh(x + dx, y + dy) == of_mesh(x, y) &&
                            std::isfinite(voxels.depth[i]) == std::isfinite(voxels.depth[j]) &&
                            std::isfinite(faces.depth[i]) == std::isfinite(faces.depth[j]);
@@ -100,16 +104,16 @@ TEST_F(MeshMix, VoxelsCoverAMeshBehindThemAsTheyCoverABackground) {
     const scenes::Scene wall =
         colored(quad({-90, -90, -20}, {90, -90, -20}, {90, 90, -20}, {-90, 90, -20}), glm::vec4(color, 1.0F));
     View view = flat_view({0.0, 1.2, 6.0}, {0.0, 1.0, 0.0});
-    view.shadow = renderer::Shadow::hard;
+    view.shadow.kind = renderer::ShadowQuality::Kind::hard;
     view.light.ambient = 0.25F;
     view.light.towards = glm::normalize(glm::dvec3(1.0, 0.4, 0.05));  // shadows fall far to the left
     Renderer renderer = voxels_of(ball, 128);
     renderer.set_mix({.meshes = raster(wall), .mesh_shadows = true});
-    const optics::Image with_wall = renderer.render(view);
+    const optics::Image with_wall = renderer.render(view).image;
     renderer.set_mix({});
     const double facing = glm::dot(view.light.towards, glm::dvec3(0.0, 0.0, 1.0));
     view.background = color * float(0.25 * 0.75 + 0.75 * facing);
-    const optics::Image with_background = renderer.render(view);
+    const optics::Image with_background = renderer.render(view).image;
     int translucent = 0;
     for (std::size_t i = 3; i < with_background.rgba.size(); i += 4) {
         translucent += with_background.rgba[i] > 20 && with_background.rgba[i] < 235 ? 1 : 0;
@@ -127,18 +131,18 @@ TEST_F(MeshMix, ShadowOfVoxelsOnAMeshLiesWhereGeometryPutsIt) {
     const scenes::Scene floor =
         colored(quad({-5, 0, -5}, {-5, 0, 5}, {5, 0, 5}, {5, 0, -5}), glm::vec4(1.0F));
     View view = flat_view({0.0, 0.9, 3.2}, {0.0, 0.0, 0.0}, 300, 300);
-    view.pixel_error = 1.0;
-    view.shadow = renderer::Shadow::hard;
+    view.detail.pixel_error = 1.0;
+    view.shadow.kind = renderer::ShadowQuality::Kind::hard;
     view.light.towards = {0.0, 1.0, 0.0};
     view.light.ambient = 0.0F;
     Renderer renderer = voxels_of(square, 512);
     renderer.set_mix({.meshes = raster(floor), .mesh_shadows = true});
-    const optics::Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view).image;
     const PictureRays rays(view);
     int dark = 0;
     int lit = 0;
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
             const glm::dvec3 direction = rays.direction({x + 0.5, y + 0.5});
             if (direction.y > -0.15) continue;  // the square itself, and what is far away
             const glm::dvec3 point = rays.eye - direction * (rays.eye.y / direction.y);
@@ -163,10 +167,10 @@ struct Shading {
 Shading shade_own_voxels(const scenes::Scene& scene, int resolution, bool are_voxelized) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     View view;
-    view.width = 155;
-    view.height = 115;
+    view.size.width = 155;
+    view.size.height = 115;
     view.camera = optics::framing_camera(snapshot.bounds, 155.0 / 115.0);
-    view.pixel_error = 1e-6;
+    view.detail.pixel_error = 1e-6;
     view.light.ambient = 0.0F;
     Renderer renderer = voxels_of(scene, resolution);
     // A proxy that is nowhere: no voxel is seen, and all cast their shadows.
@@ -175,10 +179,10 @@ Shading shade_own_voxels(const scenes::Scene& scene, int resolution, bool are_vo
                       .mesh_shadows = true,
                       .meshes_are_voxelized = are_voxelized,
                       .proxy = raster(nowhere)});
-    const optics::Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view).image;
     const auto truth = reference::ImageTracer(scene, snapshot)
                            .trace({view.camera.eye, view.camera.target, view.camera.up, view.camera.yfov},
-                                  {.towards = view.light.towards}, view.width, view.height);
+                                  {.towards = view.light.towards}, view.size.width, view.size.height);
     const std::vector<WorldTriangle> triangles = world_triangles(snapshot);
     const glm::dvec3 light = glm::normalize(view.light.towards);
     const PictureRays rays(view);
@@ -187,7 +191,7 @@ Shading shade_own_voxels(const scenes::Scene& scene, int resolution, bool are_vo
         if (truth.primitive[i] == reference::ReferenceImage::no_primitive) continue;
         const auto& [a, b, c] = triangles[truth.primitive[i]].corners;
         glm::dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
-        const int width = view.width;
+        const int width = view.size.width;
         const glm::dvec3 direction =
             rays.direction({double(int(i) % width) + 0.5, double(int(i) / width) + 0.5});
         if (glm::dot(normal, direction) > 0.0) normal = -normal;
@@ -228,7 +232,7 @@ TEST_F(MeshMix, AnAlphaMaskCutsTheMeshWhereTheTextureSaysSo) {
     renderer.set_mix({.meshes = raster(half)});
     View view = flat_view({0.0, 3.0, 0.0}, {0.0, 0.0, 0.0}, 64, 64);
     view.camera.up = {0.0, 0.0, -1.0};
-    const optics::Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view).image;
     const double pixels = 64.0 / (2.0 * std::tan(0.5 * view.camera.yfov));  // across a unit at distance 1
     for (int x = 0; x < 64; ++x) {
         const double on_mesh = (x + 0.5 - 32.0) / pixels * 2.5;
@@ -251,23 +255,23 @@ TEST_F(MeshMix, ColoursOfAMeshAreThoseOfItsVoxels) {
     const scenes::Scene scene = scenes::make_builtin("cornell");
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     View view;
-    view.width = view.height = 96;
+    view.size.width = view.size.height = 96;
     view.camera = optics::framing_camera(snapshot.bounds, 1.0);
-    view.shadow = renderer::Shadow::none;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
     Renderer renderer = voxels_of(scene, 512);
-    const optics::Image voxels = renderer.render(view);
+    const optics::Image voxels = renderer.render(view).image;
     const scenes::Scene nowhere = colored(quad({0, 900, 0}, {1, 900, 0}, {1, 901, 0}, {0, 901, 0}), red);
     renderer.set_mix({.meshes = raster(scene), .proxy = raster(nowhere)});
-    const optics::Image mesh = renderer.render(view);
+    const optics::Image mesh = renderer.render(view).image;
     EXPECT_LE(others(voxels, mesh, 6), 96 * 96 / 12) << "more than edges differ";
 }
 
 /// A picture with everything: two receivers a pixel, a proxy that cuts, sizes that no block of rays divides.
 struct Everything {
     Everything() : view(flat_view({2.1, 2.4, 4.3}, {0.0, 1.0, 0.0}, 97, 61)) {
-        view.shadow = renderer::Shadow::hard;
+        view.shadow.kind = renderer::ShadowQuality::Kind::hard;
         view.light.ambient = 0.25F;
-        view.pixel_error = 1.0;
+        view.detail.pixel_error = 1.0;
         mix = {.meshes =
                    raster(colored(quad({-4, -0.3F, 4}, {4, -0.3F, 4}, {4, 0.5F, -4}, {-4, 0.5F, -4}), red)),
                .mesh_shadows = true,
@@ -275,8 +279,9 @@ struct Everything {
     }
     [[nodiscard]] Renderer renderer(std::size_t brick_pool_bytes = 64U << 20U) const {
         const scenes::Scene scene = ball_over_floor();
-        Renderer out(scene, scenes::take_snapshot(scene),
-                     {.max_resolution = 256, .brick_pool_bytes = brick_pool_bytes});
+        Renderer out =
+            voxel_renderer(scene, scenes::take_snapshot(scene),
+                           {.tree = {.max_resolution = 256}, .pools = {.brick_bytes = brick_pool_bytes}});
         out.set_mix(mix);
         return out;
     }
@@ -286,10 +291,10 @@ struct Everything {
 
 TEST_F(MeshMix, RowsRenderedApartAreThoseOfTheWholePicture) {
     const Everything all;
-    const optics::Image whole = all.renderer().render(all.view);
+    const optics::Image whole = all.renderer().render(all.view).image;
     Renderer renderer = all.renderer();
     for (const renderer::Rows rows : {renderer::Rows{0, 7}, renderer::Rows{7, 30}, renderer::Rows{37, 24}}) {
-        const optics::Image part = renderer.render_rows(all.view, rows);
+        const optics::Image part = renderer.render(all.view, {.rows = rows}).image;
         ASSERT_EQ(part.height, rows.count);
         const auto first = whole.rgba.begin() + std::ptrdiff_t(rows.first) * whole.width * 4;
         EXPECT_TRUE(std::equal(part.rgba.begin(), part.rgba.end(), first)) << "rows from " << rows.first;
@@ -298,17 +303,18 @@ TEST_F(MeshMix, RowsRenderedApartAreThoseOfTheWholePicture) {
 
 TEST_F(MeshMix, RowsFromTwoStripsOfAMeshAreThoseOfEachAlone) {
     Everything all;
-    all.view.width = 4096;
-    all.view.height = 2048;
-    const int border = MESH_STRIP_PIXELS / all.view.width;
-    ASSERT_LT(border, all.view.height);
+    all.view.size.width = 4096;
+    all.view.size.height = 2048;
+    const int border = MESH_STRIP_PIXELS / all.view.size.width;
+    ASSERT_LT(border, all.view.size.height);
     all.mix.proxy = nullptr;
     Renderer renderer = all.renderer();
-    const optics::Image both = renderer.render_rows(all.view, {border - 1, 2});
+    const optics::Image both = renderer.render(all.view, {.rows = renderer::Rows{border - 1, 2}}).image;
     ASSERT_EQ(both.height, 2);
     int shown = 0;
     for (const int row : {1, 0}) {
-        const optics::Image one = renderer.render_rows(all.view, {border - 1 + row, 1});
+        const optics::Image one =
+            renderer.render(all.view, {.rows = renderer::Rows{border - 1 + row, 1}}).image;
         const auto first = both.rgba.begin() + std::ptrdiff_t(row) * both.width * 4;
         EXPECT_TRUE(std::equal(one.rgba.begin(), one.rgba.end(), first)) << "row " << border - 1 + row;
         for (std::size_t i = 0; i < one.rgba.size(); i += 4)
@@ -319,22 +325,23 @@ TEST_F(MeshMix, RowsFromTwoStripsOfAMeshAreThoseOfEachAlone) {
 
 TEST_F(MeshMix, FramesWithinABudgetComeToTheSamePicture) {
     const Everything all;
-    const optics::Image whole = all.renderer().render(all.view);
+    const optics::Image whole = all.renderer().render(all.view).image;
     Renderer renderer = all.renderer();
-    optics::Image image = renderer.render_within(all.view, 0.0);
+    renderer::Frame refined = renderer.render(all.view, {.budget = Milliseconds(0.0)});
     int frames = 1;
-    for (; !renderer.statistics().converged && frames < 200; ++frames)
-        image = renderer.render_within(all.view, 5.0);
-    EXPECT_TRUE(renderer.statistics().converged) << frames << " frames";
-    EXPECT_EQ(others(image, whole, 0), 0);
+    for (; !refined.statistics.converged && frames < 200; ++frames)
+        refined = renderer.render(all.view, {.budget = Milliseconds(5.0)});
+    EXPECT_TRUE(refined.statistics.converged) << frames << " frames";
+    EXPECT_EQ(others(refined.image, whole, 0), 0);
 }
 
 TEST_F(MeshMix, APoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const Everything all;
-    const optics::Image expected = all.renderer().render(all.view);
+    const optics::Image expected = all.renderer().render(all.view).image;
     Renderer tight = all.renderer(4U * 18 * 18 * 18 * 6);  // four bricks or so
-    EXPECT_EQ(others(tight.render(all.view), expected, 0), 0);
-    EXPECT_GT(tight.statistics().bricks_evicted, 0U);
+    const renderer::Frame frame = tight.render(all.view);
+    EXPECT_EQ(others(frame.image, expected, 0), 0);
+    EXPECT_GT(frame.statistics.bricks_evicted, 0U);
 }
 
 TEST_F(MeshMix, TakenAwayItLeavesThePictureOfVoxelsAlone) {
@@ -342,23 +349,24 @@ TEST_F(MeshMix, TakenAwayItLeavesThePictureOfVoxelsAlone) {
     Renderer renderer = all.renderer();
     (void)renderer.render(all.view);
     renderer.set_mix({});
-    const optics::Image after = renderer.render(all.view);
+    const optics::Image after = renderer.render(all.view).image;
     Renderer fresh = all.renderer();
     fresh.set_mix({});
-    EXPECT_EQ(others(after, fresh.render(all.view), 0), 0);
-    EXPECT_NE(after.rgba, all.renderer().render(all.view).rgba);
+    EXPECT_EQ(others(after, fresh.render(all.view).image, 0), 0);
+    EXPECT_NE(after.rgba, all.renderer().render(all.view).image.rgba);
 }
 
 TEST_F(MeshMix, AMillionUnitsFromTheOriginShowsTheSame) {
     const Everything here;
-    const optics::Image expected = here.renderer().render(here.view);
+    const optics::Image expected = here.renderer().render(here.view).image;
     const glm::dvec3 away(1e6, -3e6, 2e6);
     const auto moved = [&](scenes::Scene scene) {
         scene.nodes[0].trs.translation += away;
         return scene;
     };
     const scenes::Scene scene = moved(ball_over_floor());
-    Renderer renderer(scene, scenes::take_snapshot(scene), {.max_resolution = 256});
+    Renderer renderer =
+        voxel_renderer(scene, scenes::take_snapshot(scene), {.tree = {.max_resolution = 256}});
     renderer.set_mix(
         {.meshes =
              raster(moved(colored(quad({-4, -0.3F, 4}, {4, -0.3F, 4}, {4, 0.5F, -4}, {-4, 0.5F, -4}), red))),
@@ -367,7 +375,7 @@ TEST_F(MeshMix, AMillionUnitsFromTheOriginShowsTheSame) {
     View view = here.view;
     view.camera.eye += away;
     view.camera.target += away;
-    EXPECT_LE(others(renderer.render(view), expected, 2), 97 * 61 / 100);
+    EXPECT_LE(others(renderer.render(view).image, expected, 2), 97 * 61 / 100);
 }
 
 TEST(MeshMixContexts, OsmesaAndEglShowTheSame) {
@@ -380,7 +388,7 @@ TEST(MeshMixContexts, OsmesaAndEglShowTheSame) {
             GTEST_SKIP() << "only one kind of context here: " << error.what();
         }
         const Everything all;
-        pictures.push_back(all.renderer().render(all.view));
+        pictures.push_back(all.renderer().render(all.view).image);
     }
     // Drivers may round a vertex to another 256th of a pixel, which shows at edges alone.
     EXPECT_LE(others(pictures[0], pictures[1], 2), 97 * 61 / 100);

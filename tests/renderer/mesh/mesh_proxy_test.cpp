@@ -24,16 +24,16 @@ TEST_F(MeshProxy, AProxyAroundEverythingChangesNoPixel) {
     for (const glm::dvec3& eye :
          {glm::dvec3(2.1, 2.4, 4.3), glm::dvec3(30.0, 20.0, 25.0), glm::dvec3(0.1, 1.3, 0.0)}) {
         View view = flat_view(eye, {0.0, 0.9, 0.0});
-        view.shadow = renderer::Shadow::hard;
+        view.shadow.kind = renderer::ShadowQuality::Kind::hard;
         view.light.ambient = 0.25F;
         Renderer renderer = voxels_of(scene, 128);
-        const optics::Image without = renderer.render(view);
-        EXPECT_LE(renderer.statistics().rays_launched, 155U * 115U);
-        EXPECT_GT(renderer.statistics().rays_launched, 0U);
+        const renderer::Frame without = renderer.render(view);
+        EXPECT_LE(without.statistics.rays_launched, 155U * 115U);
+        EXPECT_GT(without.statistics.rays_launched, 0U);
         renderer.set_mix({.proxy = raster(box)});
-        const optics::Image with = renderer.render(view);
-        EXPECT_EQ(others(with, without, 0), 0) << "eye " << eye.x;
-        EXPECT_GT(renderer.statistics().rays_launched, 0U);
+        const renderer::Frame with = renderer.render(view);
+        EXPECT_EQ(others(with.image, without.image, 0), 0) << "eye " << eye.x;
+        EXPECT_GT(with.statistics.rays_launched, 0U);
     }
 }
 
@@ -44,26 +44,26 @@ TEST_F(MeshProxy, OnlyPixelsOfTheProxyLaunchRays) {
     const View view = flat_view({1.1, 1.4, 6.3}, {0.9, 1.0, 0.0});
     Renderer renderer = voxels_of(ball_over_floor(), 128);
     renderer.set_mix({.proxy = raster(box)});
-    const optics::Image image = renderer.render(view);
+    const renderer::Frame image = renderer.render(view);
     const PictureRays rays(view);
     int surely = 0;
     int doubtful = 0;
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
             const PixelFaces truth = faces_at(triangles, rays, x, y);
             doubtful += truth.sure ? 0 : 1;
             surely += truth.sure && !truth.faces.empty() ? 1 : 0;
         }
     }
     EXPECT_GT(surely, 200);
-    EXPECT_GT(renderer.statistics().rays_launched, 0U);
-    EXPECT_LE(renderer.statistics().rays_launched, std::uint64_t(surely + doubtful));
-    const std::uint64_t produced = renderer.statistics().bricks_produced;
+    EXPECT_GT(image.statistics.rays_launched, 0U);
+    EXPECT_LE(image.statistics.rays_launched, std::uint64_t(surely + doubtful));
+    const std::uint64_t produced = image.statistics.bricks_produced;
     renderer.set_mix({});
-    (void)renderer.render(view);
-    EXPECT_LT(produced * 10, renderer.statistics().bricks_produced) << "what no ray met was produced";
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
-        ASSERT_EQ(image.rgba[i], 0) << "pixel " << i / 4;
+    const renderer::Frame frame = renderer.render(view);
+    EXPECT_LT(produced * 10, frame.statistics.bricks_produced) << "what no ray met was produced";
+    for (std::size_t i = 3; i < image.image.rgba.size(); i += 4)
+        ASSERT_EQ(image.image.rgba[i], 0) << "pixel " << i / 4;
 }
 
 /// Where a face of the scene lies in the proxy by more than two voxels, something shows; where all lie
@@ -71,15 +71,15 @@ TEST_F(MeshProxy, OnlyPixelsOfTheProxyLaunchRays) {
 void expect_cut_by(const scenes::Scene& proxy, const View& view, const scenes::Scene& scene, int resolution) {
     Renderer renderer = voxels_of(scene, resolution);
     renderer.set_mix({.proxy = raster(proxy)});
-    const optics::Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view).image;
     const std::vector<WorldTriangle> scene_faces = world_triangles(scenes::take_snapshot(scene));
     const std::vector<WorldTriangle> proxy_faces = world_triangles(scenes::take_snapshot(proxy));
     const double margin = 2.0 * voxel_side(scene, resolution);
     const PictureRays rays(view);
     int empty = 0;
     int full = 0;
-    for (int y = 1; y < view.height; y += 2) {
-        for (int x = 1; x < view.width; x += 2) {
+    for (int y = 1; y < view.size.height; y += 2) {
+        for (int x = 1; x < view.size.width; x += 2) {
             const PixelFaces span = faces_at(proxy_faces, rays, x, y);
             if (!span.sure) continue;
             double first = 1e30;
@@ -146,9 +146,9 @@ TEST_F(MeshProxy, AProxyShowsTheMiddleOfThreeSheetsAlone) {
     const scenes::Scene box = colored(box_corners({-2, -2, -0.5F}, {2, 2, 0.5F}), red);
     Renderer renderer = voxels_of(scene, 128);
     const View view = flat_view({0.0, 0.0, 6.0}, {0.0, 0.0, 0.0}, 64, 64);
-    EXPECT_GT(at(renderer.render(view), 32, 32).b, 100);
+    EXPECT_GT(at(renderer.render(view).image, 32, 32).b, 100);
     renderer.set_mix({.proxy = raster(box)});
-    const optics::Image image = renderer.render(view);
+    const optics::Image image = renderer.render(view).image;
     for (int y = 26; y < 38; ++y) {
         for (int x = 26; x < 38; ++x) {
             const glm::ivec4 pixel = at(image, x, y);

@@ -38,10 +38,10 @@ interop::MarchView march_view(const View& view, const MarchSpace& space, double 
     out.eye = glm::vec3(eye + forward * skipped);
     out.forward = glm::vec3(forward);
     out.skipped = float(skipped);
-    out.right = glm::vec3(right * (half * view.width / view.height));
+    out.right = glm::vec3(right * (half * view.size.width / view.size.height));
     out.up = glm::vec3(up * half);
-    out.width = view.width;
-    out.height = view.height;
+    out.width = view.size.width;
+    out.height = view.size.height;
     return out;
 }
 
@@ -73,8 +73,8 @@ class MeshRasterEyes : public GlTest, public ::testing::WithParamInterface<Eye> 
 
 View view_of(const Eye& eye, int width = 117, int height = 83) {
     View view;
-    view.width = width;
-    view.height = height;
+    view.size.width = width;
+    view.size.height = height;
     view.camera = {.eye = eye.eye, .target = eye.target, .yfov = eye.yfov};
     return view;
 }
@@ -87,15 +87,15 @@ TEST_P(MeshRasterEyes, NearestDistanceIsThatOfTheRayAndThePlane) {
     const MarchSpace space{{-2.5, -1.0, -2.2}, 0.01};
     MeshRaster mesh(scene, snapshot);
     const std::vector<float> nearest =
-        read_nearest(mesh.draw_surface(march_view(view, space), space, 0), view.width);
+        read_nearest(mesh.draw_surface(march_view(view, space), space, 0), view.size.width);
     const PictureRays rays(view);
     int sure = 0;
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
             const PixelFaces truth = faces_at(triangles, rays, x, y);
             if (!truth.sure) continue;
             ++sure;
-            const float t = nearest[std::size_t(y * view.width + x)];
+            const float t = nearest[std::size_t(y * view.size.width + x)];
             if (truth.faces.empty()) {
                 ASSERT_EQ(t, float(MESH_MISS)) << "pixel (" << x << ", " << y << ")";
                 continue;
@@ -108,7 +108,7 @@ TEST_P(MeshRasterEyes, NearestDistanceIsThatOfTheRayAndThePlane) {
                 << "pixel (" << x << ", " << y << "), cosine " << first.cosine;
         }
     }
-    EXPECT_GT(sure, view.width * view.height * 8 / 10);
+    EXPECT_GT(sure, view.size.width * view.size.height * 8 / 10);
 }
 
 TEST_P(MeshRasterEyes, SpanIsThatOfTheFirstAndTheLastFace) {
@@ -119,14 +119,14 @@ TEST_P(MeshRasterEyes, SpanIsThatOfTheFirstAndTheLastFace) {
     const MarchSpace space{{-2.5, -1.0, -2.2}, 0.01};
     MeshRaster mesh(scene, snapshot);
     const MeshSpan drawn = mesh.draw_span(march_view(view, space), space, 0);
-    const auto spans = read<glm::vec2>(drawn.span, view.width, drawn.rows, GL_RG, GL_FLOAT);
-    const auto counts = read<float>(drawn.faces, view.width, drawn.rows, GL_RED, GL_FLOAT);
+    const auto spans = read<glm::vec2>(drawn.span, view.size.width, drawn.rows, GL_RG, GL_FLOAT);
+    const auto counts = read<float>(drawn.faces, view.size.width, drawn.rows, GL_RED, GL_FLOAT);
     const PictureRays rays(view);
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
             const PixelFaces truth = faces_at(triangles, rays, x, y);
             if (!truth.sure) continue;
-            const auto pixel = std::size_t(y * view.width + x);
+            const auto pixel = std::size_t(y * view.size.width + x);
             float fronts = 0.0F;
             for (const Face& face : truth.faces)
                 fronts += face.cosine < 0.0 ? 1.0F : -1.0F;
@@ -164,11 +164,11 @@ Disagreement against_embree(const scenes::Scene& scene, const View& view) {
     const MarchSpace space{snapshot.bounds.low, size / 512.0};
     MeshRaster mesh(scene, snapshot);
     const std::vector<float> nearest =
-        read_nearest(mesh.draw_surface(march_view(view, space), space, 0), view.width);
+        read_nearest(mesh.draw_surface(march_view(view, space), space, 0), view.size.width);
     const reference::ReferenceImage truth =
         reference::ImageTracer(scene, snapshot)
-            .trace({view.camera.eye, view.camera.target, view.camera.up, view.camera.yfov}, {}, view.width,
-                   view.height);
+            .trace({view.camera.eye, view.camera.target, view.camera.up, view.camera.yfov}, {},
+                   view.size.width, view.size.height);
     Disagreement out;
     for (std::size_t i = 0; i < nearest.size(); ++i) {
         const bool here = nearest[i] < MESH_MISS;
@@ -177,8 +177,9 @@ Disagreement against_embree(const scenes::Scene& scene, const View& view) {
         if (here == there && (!here || std::abs(nearest[i] * space.unit - truth.depth[i]) < 1e-4 * size))
             continue;
         if (out.pixels++ == 0)
-            out.first = fmt::format("pixel ({}, {}): {} against {}", i % std::size_t(view.width),
-                                    i / std::size_t(view.width), nearest[i] * space.unit, truth.depth[i]);
+            out.first =
+                fmt::format("pixel ({}, {}): {} against {}", i % std::size_t(view.size.width),
+                            i / std::size_t(view.size.width), nearest[i] * space.unit, truth.depth[i]);
     }
     return out;
 }
@@ -190,8 +191,8 @@ TEST_F(MeshRasterTest, NearestDistanceIsEmbreesButForSilhouettes) {
                                       std::pair("tree-leaves", 0.002), std::pair("needles", 0.05)}) {
         const scenes::Scene scene = scenes::make_builtin(name);
         View view;
-        view.width = 203;
-        view.height = 151;
+        view.size.width = 203;
+        view.size.height = 151;
         view.camera = optics::framing_camera(scenes::take_snapshot(scene).bounds, 203.0 / 151.0);
         const Disagreement found = against_embree(scene, view);
         // Vertices are rounded to a 256th of a pixel: every so many silhouettes lie on the other side of a
@@ -207,8 +208,8 @@ TEST_F(MeshRasterTest, NearestDistanceOfRealScenesIsEmbreesButForSilhouettes) {
     for (const char* name : {"gltf/stanford_bunny_69k.glb", "gltf/CesiumMan.glb", "gltf/tree_mask.glb"}) {
         const scenes::Scene scene = scenes::load(std::string(CAIRN_SCENE_DATA) + "/" + name);
         View view;
-        view.width = 203;
-        view.height = 151;
+        view.size.width = 203;
+        view.size.height = 151;
         view.camera = optics::framing_camera(scenes::take_snapshot(scene).bounds, 203.0 / 151.0);
         const Disagreement found = against_embree(scene, view);
         EXPECT_GT(found.covered, 203 * 151 / 20) << name;
@@ -229,8 +230,10 @@ TEST_F(MeshRasterTest, AMillionUnitsFromTheOriginChangesNothing) {
     const MarchSpace near_space{{-2.5, -1.0, -2.2}, 0.01};
     const MarchSpace far_space{near_space.origin + away, 0.01};
     const interop::MarchView marched = march_view(view, near_space);
-    const std::vector<float> here = read_nearest(near_mesh.draw_surface(marched, near_space, 0), view.width);
-    const std::vector<float> there = read_nearest(far_mesh.draw_surface(marched, far_space, 0), view.width);
+    const std::vector<float> here =
+        read_nearest(near_mesh.draw_surface(marched, near_space, 0), view.size.width);
+    const std::vector<float> there =
+        read_nearest(far_mesh.draw_surface(marched, far_space, 0), view.size.width);
     int others = 0;
     for (std::size_t i = 0; i < here.size(); ++i)
         others += std::abs(here[i] - there[i]) > 1e-4F * here[i] ? 1 : 0;
@@ -246,18 +249,19 @@ TEST_F(MeshRasterTest, ANarrowLensFarAwaySeesDistancesFromWhereItsRaysStart) {
     MeshRaster mesh(scene, snapshot);
     const double skipped = (distance - 10.0) / space.unit;
     const interop::MarchView marched = march_view(view, space, skipped);
-    const std::vector<float> nearest = read_nearest(mesh.draw_surface(marched, space, 0), view.width);
+    const std::vector<float> nearest = read_nearest(mesh.draw_surface(marched, space, 0), view.size.width);
     const PictureRays rays(view);
     const std::vector<WorldTriangle> triangles = world_triangles(snapshot);
     int covered = 0;
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
             const PixelFaces truth = faces_at(triangles, rays, x, y);
             if (!truth.sure || truth.faces.empty() || std::abs(truth.faces[0].cosine) < 0.1) continue;
             ++covered;
             const double start =
                 (distance - 10.0) / glm::dot(rays.direction({x + 0.5, y + 0.5}), glm::dvec3(0, 0, -1));
-            ASSERT_NEAR(nearest[std::size_t(y * view.width + x)] * space.unit, truth.faces[0].t - start, 1e-4)
+            ASSERT_NEAR(nearest[std::size_t(y * view.size.width + x)] * space.unit, truth.faces[0].t - start,
+                        1e-4)
                 << "pixel (" << x << ", " << y << ")";
         }
     }
@@ -277,15 +281,15 @@ TEST_F(MeshRasterTest, RowsDrawnApartAreThoseOfOnePicture) {
     const MeshSurface above = mesh.draw_surface(marched, space, border - 1);
     ASSERT_EQ(above.first_row, 0);
     ASSERT_EQ(above.rows, border);
-    const std::vector<float> first = read_nearest(above, view.width);
+    const std::vector<float> first = read_nearest(above, view.size.width);
     const MeshSurface below = mesh.draw_surface(marched, space, border);
     ASSERT_EQ(below.first_row, border);
     ASSERT_EQ(below.rows, 300 - border);
-    const std::vector<float> second = read_nearest(below, view.width);
+    const std::vector<float> second = read_nearest(below, view.size.width);
     const PictureRays rays(view);
     for (const int row : {border - 1, border}) {
         const std::vector<float>& strip = row < border ? first : second;
-        for (int x = 0; x < view.width; x += 7) {
+        for (int x = 0; x < view.size.width; x += 7) {
             const glm::dvec3 direction = rays.direction({x + 0.5, row + 0.5});
             const double t = -rays.eye.y / direction.y;
             const glm::dvec3 point = rays.eye + t * direction;

@@ -126,7 +126,7 @@ protected:
 
     void play_round() {
         const std::vector<Query> queries = ask();
-        tree_->begin_round(++round_, used_);
+        tree_->begin_round(renderer::Round{++round_}, used_);
         learn_owners();
         this_round_.clear();
         for (const Query& query : queries) {

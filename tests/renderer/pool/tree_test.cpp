@@ -72,8 +72,11 @@ TEST(TreeShapeTest, EveryTileHasItsOwnHashAndItsParent) {
                     hashes.insert(TileHash{}(tile));
                     ++tiles;
                     for (const int n : {2, 3, 4, 8}) {
-                        for (int child = 0; child < n * n * n; ++child)
-                            ASSERT_EQ(parent_of(child_of(tile, n, child), n), tile) << "N = " << n;
+                        for (int child = 0; child < n * n * n; ++child) {
+                            const Tile below = child_of(tile, n, child);
+                            const Tile parent{below.level - 1, below.position / std::int64_t(n)};
+                            ASSERT_EQ(parent, tile) << "N = " << n;
+                        }
                     }
                 }
             }
@@ -92,7 +95,7 @@ protected:
         next_round();
     }
     Tree& tree() { return *tree_; }
-    [[nodiscard]] std::uint32_t round() const { return round_; }
+    [[nodiscard]] Round round() const { return {round_}; }
     [[nodiscard]] Reached reached() const { return walk(*tree_, slots_); }
 
     /// The pass that ends used these slots.
@@ -100,7 +103,7 @@ protected:
         std::vector<std::uint32_t> stamps(std::size_t(slots_), 0);
         for (const int slot : used_slots)
             stamps[std::size_t(slot)] = round_;
-        tree_->begin_round(++round_, stamps);
+        tree_->begin_round(Round{++round_}, stamps);
     }
     std::uint32_t children(std::uint32_t entry) {
         const std::optional<std::uint32_t> first = tree_->add_children(entry);
@@ -193,13 +196,13 @@ TEST_F(TreeTest, CountsTheBricksThatAFrameUsed) {
     const int unused = brick(first + 1);
     EXPECT_EQ(tree().bricks_used_since(round()), 2) << "given out in this round";
     next_round();
-    const std::uint32_t frame = round();
+    const Round frame = round();
     EXPECT_EQ(tree().bricks_used_since(frame), 0);
     next_round({kept});
     (void)brick(first + 2);
     next_round();
     EXPECT_EQ(tree().bricks_used_since(frame), 2) << "one by rays, one given out";
-    EXPECT_EQ(tree().bricks_used_since(frame - 1), 3) << "slot " << unused << " is still resident";
+    EXPECT_EQ(tree().bricks_used_since(frame.before()), 3) << "slot " << unused << " is still resident";
     EXPECT_EQ(tree().bricks_resident(), 3);
 }
 
@@ -317,7 +320,7 @@ TEST_F(TreeTest, BricksThatMayNotStayNeverTakeTurns) {
     (void)brick(top + 1);
     next_round();
     next_round();
-    tree().keep_since(3);
+    tree().keep_since(Round{3});
     EXPECT_TRUE(tree().add_brick(top + 2, false).has_value()) << "an older brick was there";
     next_round();
     EXPECT_TRUE(tree().add_brick(top + 3, false).has_value()) << "an older brick was there";

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "renderer/open_content.h"
 #include "renderer/produce/fractal_content.h"
 #include "renderer/renderer.h"
 #include "tests/support/gl_fixture.h"
@@ -105,22 +106,17 @@ TEST_F(GlTest, TheOracleOfTheSpongeKnowsItsTilesExactly) {
 }
 
 TEST_F(GlTest, TheSpongeHasHolesThatShowTheBackground) {
-    renderer::TreeOptions tree;
-    tree.n = 3;
-    tree.m = 27;
-    tree.max_resolution = 1594323;
-    tree.brick_pool_bytes = std::size_t(64) << 20U;
-    renderer::Renderer sponge(std::make_unique<renderer::FractalContent>(renderer::tree_shape_of(tree)),
-                              tree);
+    renderer::Renderer sponge(renderer::open_content("builtin:sponge"),
+                              {.pools = {.brick_bytes = std::size_t(64) << 20U}});
     renderer::View view;
-    view.width = 91;
-    view.height = 91;
-    view.shadow = renderer::Shadow::none;
+    view.size.width = 91;
+    view.size.height = 91;
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
     // From far, so that its front, [0, 1]^2, is all but the outermost part of the picture.
     view.camera.eye = {0.5, 0.5, 3.0};
     view.camera.target = {0.5, 0.5, 0.5};
     view.camera.yfov = 2.0 * std::atan(0.5 / 2.0);
-    const optics::Image image = sponge.render(view);
+    const optics::Image image = sponge.render(view).image;
     auto alpha = [&](double x, double y) {  // of a place of the front
         const auto column = std::size_t(x * 91.0);
         const auto row = std::size_t((1.0 - y) * 91.0);

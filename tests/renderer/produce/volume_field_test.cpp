@@ -3,6 +3,7 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <glad/gl.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -126,11 +127,9 @@ TEST(VolumeFields, ShapeHoldsTheFieldOrIsCutOffAtTheLimit) {
 
 class VolumeBricks : public GlTest {};
 
-VisibleDensities visible_from(int density) {
-    VisibleDensities visible{};
-    for (int i = density; i < 256; ++i)
-        visible[std::size_t(i)] = true;
-    return visible;
+/// Nothing shows under that one of the 255 steps of density.
+TransferFunction visible_from(int density) {
+    return TransferFunction({{(density - 1) / 255.0, glm::dvec3(1.0), 0.0}, {1.0, glm::dvec3(1.0), 1.0}});
 }
 
 /// Does any voxel of the tile's brick have its mask bit set?

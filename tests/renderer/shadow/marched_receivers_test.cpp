@@ -13,6 +13,7 @@
 #include "scenes/transform.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
@@ -50,15 +51,15 @@ struct Disagreement {
 Disagreement disagreement_of(const scenes::Scene& scene, int size, int max_resolution) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     View view;
-    view.width = view.height = size;
+    view.size.width = view.size.height = size;
     view.camera = optics::framing_camera(snapshot.bounds, 1.0);
     const reference::ImageTracer tracer(scene, snapshot);
     const reference::ReferenceImage truth =
         tracer.trace({view.camera.eye, view.camera.target, view.camera.up, view.camera.yfov},
                      {view.light.positional, view.light.position, view.light.towards}, size, size);
     const std::vector<glm::dvec3> planes = plane_normals(snapshot);
-    Renderer renderer(scene, snapshot, {.max_resolution = max_resolution});
-    const std::vector<float> shares = renderer.light_shares(view).shares;
+    Renderer renderer = voxel_renderer(scene, snapshot, {.tree = {.max_resolution = max_resolution}});
+    const std::vector<float> shares = renderer.light(view).light.shares;
     const glm::dvec3 to_light = glm::normalize(view.light.towards);
     Disagreement found;
     for (std::size_t i = 0; i < shares.size(); ++i) {
@@ -96,18 +97,18 @@ TEST_F(MarchedReceivers, HardShadowsAgreeWithEmbreeAsFarAsVoxelsOfAPixelCanTell)
 
 TEST_F(MarchedReceivers, AFlatWallSeenFromBehindHasItsBackLit) {
     const scenes::Scene wall = sheet(glm::vec4(1.0F));
-    Renderer renderer(wall, scenes::take_snapshot(wall), {.max_resolution = 256});
+    Renderer renderer = voxel_renderer(wall, scenes::take_snapshot(wall), {.tree = {.max_resolution = 256}});
     for (const double degrees : {8.0, 12.0, 20.0, 45.0, 80.0}) {
         for (const double side : {1.0, -1.0}) {
             const double angle = degrees * 3.14159265358979 / 180.0;
             View view;
-            view.width = view.height = 64;
+            view.size.width = view.size.height = 64;
             view.camera = {.eye = {4.0 * std::cos(angle), side * 4.0 * std::sin(angle), 0.3},
                            .target = {0.0, 0.0, 0.0},
                            .up = {0.0, 1.0, 0.0},
                            .yfov = 0.1};
             view.light.towards = {0.1, side, 0.2};
-            const std::vector<float> shares = renderer.light_shares(view).shares;
+            const std::vector<float> shares = renderer.light(view).light.shares;
             int lit = 0;
             int dark = 0;
             for (const float share : shares) {

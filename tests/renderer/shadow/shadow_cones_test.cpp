@@ -10,18 +10,20 @@
 #include "scenes/builtin/builtin.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/square_over_floor.h"
+#include "tests/support/voxel_renderer.h"
 
 namespace cairn::test {
 namespace {
 
 using optics::Image;
+using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::View;
 
 class ShadowCones : public GlTest {};
 
 double penumbra_rmse(SquareOverFloorScene& scene, int rays, bool cones) {
-    const std::vector<float> found = scene.renderer().light_shares(scene.view(rays, cones)).shares;
+    const std::vector<float> found = scene.renderer().light(scene.view(rays, cones)).light.shares;
     double squares = 0.0;
     int penumbra = 0;
     for (int i = 0; i < scene.size() * scene.size(); ++i) {
@@ -48,44 +50,47 @@ TEST_F(ShadowCones, AreNearerToTheClosedFormThanAsManyRays) {
 TEST_F(ShadowCones, AskForFewerBricks) {
     const auto bricks = [](bool cones) {
         SquareOverFloorScene scene(48);
-        (void)scene.renderer().light_shares(scene.view(1, false));
+        (void)scene.renderer().light(scene.view(1, false));
         SquareOverFloorScene fresh(48);
-        (void)fresh.renderer().light_shares(fresh.view(4, cones));
-        return fresh.renderer().statistics().bricks_produced;
+        const renderer::LightFrame frame = fresh.renderer().light(fresh.view(4, cones));
+        return frame.statistics.bricks_produced;
     };
     EXPECT_LT(bricks(true), bricks(false));
 }
 
 View knot_view(int rays, bool cones) {
     View view;
-    view.width = 60;
-    view.height = 45;
+    view.size.width = 60;
+    view.size.height = 45;
     view.camera =
         optics::framing_camera(scenes::take_snapshot(scenes::make_builtin("knot")).bounds, 60.0 / 45.0);
     view.light = {.positional = true, .position = {3.0, 5.0, 3.0}, .radius = 0.7};
-    view.shadow_rays = rays;
-    view.shadow_cones = cones;
+    view.shadow = {.kind = cones ? renderer::ShadowQuality::Kind::cones : renderer::ShadowQuality::Kind::rays,
+                   .samples = rays};
     return view;
 }
 
-Renderer knot(const renderer::TreeOptions& options) {
+Renderer knot(const Settings& options) {
     const scenes::Scene scene = scenes::make_builtin("knot");
-    return {scene, scenes::take_snapshot(scene), options};
+    return voxel_renderer(scene, scenes::take_snapshot(scene), options);
 }
 
 TEST_F(ShadowCones, PictureDependsOnTheViewAlone) {
     const View view = knot_view(4, true);
-    Renderer large = knot({.max_resolution = 1024});
-    const optics::Image picture = large.render(view);
-    Renderer small = knot({.max_resolution = 1024, .brick_pool_bytes = 600U << 10U, .query_capacity = 50});
-    EXPECT_EQ(small.render(view).rgba, picture.rgba) << "a pool of few bricks";
-    EXPECT_GT(small.statistics().bricks_evicted, 0U) << "the pool was not small";
-    Renderer hasty = knot({.max_resolution = 1024});
-    optics::Image refined = hasty.render_within(view, 1.0);
-    for (int frame = 0; frame < 400 && !hasty.statistics().converged; ++frame)
-        refined = hasty.render_within(view, 5.0);
-    EXPECT_TRUE(hasty.statistics().converged);
-    EXPECT_EQ(refined.rgba, picture.rgba) << "frames within a budget";
+    Renderer large = knot({.tree = {.max_resolution = 1024}});
+    const optics::Image picture = large.render(view).image;
+    Renderer small = knot({.tree = {.max_resolution = 1024},
+                           .pools = {.brick_bytes = 600U << 10U},
+                           .march = {.query_capacity = 50}});
+    const renderer::Frame small_frame = small.render(view);
+    EXPECT_EQ(small_frame.image.rgba, picture.rgba) << "a pool of few bricks";
+    EXPECT_GT(small_frame.statistics.bricks_evicted, 0U) << "the pool was not small";
+    Renderer hasty = knot({.tree = {.max_resolution = 1024}});
+    renderer::Frame refined = hasty.render(view, {.budget = Milliseconds(1.0)});
+    for (int frame = 0; frame < 400 && !refined.statistics.converged; ++frame)
+        refined = hasty.render(view, {.budget = Milliseconds(5.0)});
+    EXPECT_TRUE(refined.statistics.converged);
+    EXPECT_EQ(refined.image.rgba, picture.rgba) << "frames within a budget";
 }
 
 TEST_F(ShadowCones, EveryKindOfTreeTakesThem) {
@@ -101,22 +106,21 @@ TEST_F(ShadowCones, EveryKindOfTreeTakesThem) {
     };
     struct Kind {
         const char* name;
-        renderer::TreeOptions options;
+        Settings options;
         bool blended;
     };
-    const Kind kinds[] = {{"N = 2", {.n = 2, .m = 8, .max_resolution = 512}, false},
-                          {"N = 3", {.n = 3, .m = 27, .max_resolution = 512}, false},
-                          {"N = 8", {.n = 8, .m = 8, .max_resolution = 512}, false},
-                          {"blended", {.m = 8, .max_resolution = 512, .mips = true}, true}};
+    const Kind kinds[] = {{"N = 2", {.tree = {.n = 2, .m = 8, .max_resolution = 512}}, false},
+                          {"N = 3", {.tree = {.n = 3, .m = 27, .max_resolution = 512}}, false},
+                          {"N = 8", {.tree = {.n = 8, .m = 8, .max_resolution = 512}}, false},
+                          {"blended", {.tree = {.m = 8, .max_resolution = 512, .mips = true}}, true}};
     for (const Kind& kind : kinds) {
         Renderer renderer = knot(kind.options);
         View view = knot_view(4, true);
-        if (kind.blended) view.level_of_detail = renderer::LevelOfDetail::blended;
-        const double by_cones = mean(renderer.light_shares(view));
-        view.shadow_cones = false;
-        view.shadow_rays = 32;
+        if (kind.blended) view.detail.kind = renderer::LevelOfDetail::Kind::blended;
+        const double by_cones = mean(renderer.light(view).light);
+        view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 32};
         // Of two mips a cone takes the coarser by its area too, which is lighter near the receiver.
-        EXPECT_NEAR(by_cones, mean(renderer.light_shares(view)), kind.blended ? 0.09 : 0.03) << kind.name;
+        EXPECT_NEAR(by_cones, mean(renderer.light(view).light), kind.blended ? 0.09 : 0.03) << kind.name;
     }
 }
 
@@ -129,11 +133,11 @@ TEST_F(ShadowCones, ManyRaysAreAllCounted) {
         EXPECT_LT(rmse, before + 1e-3) << rays << " rays";
         before = rmse;
     }
-    Renderer renderer = knot({.max_resolution = 1024});
+    Renderer renderer = knot({.tree = {.max_resolution = 1024}});
     View view = knot_view(64, false);
-    const std::vector<float> few = renderer.light_shares(view).shares;
-    view.shadow_rays = 512;
-    const std::vector<float> many = renderer.light_shares(view).shares;
+    const std::vector<float> few = renderer.light(view).light.shares;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 512};
+    const std::vector<float> many = renderer.light(view).light.shares;
     double drift = 0.0;
     for (std::size_t i = 0; i < few.size(); ++i)
         drift += double(many[i]) - double(few[i]);

@@ -10,7 +10,7 @@
 
 #include "reference/area_light.h"
 #include "reference/image.h"
-#include "renderer/soft_shadow.h"
+#include "renderer/shadow/map_shadows.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/soft_shadow_scene.h"
 
@@ -32,6 +32,10 @@ const Corners floor_of_4 = square({0.0, 0.0, 0.0}, 2.0);
 
 SoftShadowOptions sizes(int occluder_size, int receiver_size) {
     return {occluder_size, receiver_size, ShadowPasses::two, renderer::ShadowFormat::fp32};
+}
+
+renderer::ShadowScene thing_over_floor(const ShadowScene& scene) {
+    return {scene.scene, scene.whole, scenes::NodeSelection{false, true}, scenes::NodeSelection{true, false}};
 }
 
 std::vector<double> rays_find(const ShadowScene& scene, const Light& light,
@@ -161,16 +165,17 @@ TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
     EXPECT_LT(error.mean, 0.06) << error.worst;
     EXPECT_GT(error.shadowed, 500U);
 
-    renderer::SoftShadowRenderer pictures(scene.scene, scene.whole, {false, true}, {true, false});
+    renderer::MapShadows pictures(thing_over_floor(scene));
     renderer::View view;
-    view.width = view.height = 96;
+    view.size = {96, 96};
+    view.shadow.kind = renderer::ShadowQuality::Kind::rays;
     view.camera = {.eye = {0.0, 12.0, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0.0, 0.0, -1.0}, .yfov = 0.9};
     view.light = light;
-    const renderer::SoftShadowPicture picture = pictures.render(view);
+    const renderer::ShadowPicture picture = pictures.render(view);
     int behind = 0;
     for (int y = 0; y < 96; ++y) {
         for (int x = 60; x < 96; ++x) {  // x > 2.6
-            const float visible = picture.visible[std::size_t(y) * 96 + std::size_t(x)];
+            const float visible = picture.light.shares[std::size_t(y) * 96 + std::size_t(x)];
             if (visible < 0.0F) continue;
             ASSERT_EQ(visible, 1.0F) << "pixel (" << x << ", " << y << ")";
             ++behind;
@@ -182,7 +187,8 @@ TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
 /// From under the ball: of all that is in the scene, the floor is the furthest.
 renderer::View from_under_the_ball() {
     renderer::View view;
-    view.width = view.height = 80;
+    view.size = {80, 80};
+    view.shadow.kind = renderer::ShadowQuality::Kind::rays;
     view.camera = {.eye = {0.0, 0.1, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0.0, 0.0, -1.0}, .yfov = 2.9};
     return view;
 }
@@ -191,10 +197,10 @@ renderer::View from_under_the_ball() {
 // be rounded past the far one.
 TEST_F(SoftShadowLimits, AnEyeAmongTheOccludersSeesTheFurthestReceiver) {
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 2), floor_of_4);
-    renderer::SoftShadowRenderer pictures(scene.scene, scene.whole, {false, true}, {true, false});
+    renderer::MapShadows pictures(thing_over_floor(scene));
     renderer::View view = from_under_the_ball();
     view.light = light_above(3.0, 0.2, 0.2);
-    for (const float visible : pictures.render(view).visible)
+    for (const float visible : pictures.render(view).light.shares)
         ASSERT_GE(visible, 0.0F) << "the floor is not there";
 }
 
@@ -204,24 +210,24 @@ TEST_F(SoftShadowLimits, MoreThanOneLight) {
     renderer::View view = from_under_the_ball();
     const std::array<Light, 2> lights = {optics::aimed_light({1.2, 3.0, 0.3}, {0.0, 0.5, 0.0}, 0.4, 0.4),
                                          optics::aimed_light({-0.9, 2.5, -0.8}, {0.0, 0.5, 0.0}, 0.6, 0.3)};
-    renderer::SoftShadowRenderer pictures(scene.scene, scene.whole, {false, true}, {true, false});
+    renderer::MapShadows pictures(thing_over_floor(scene));
     std::vector<double> sum, truth;
     for (const Light& light : lights) {
         view.light = light;
-        const renderer::SoftShadowPicture picture = pictures.render(view);
+        const renderer::ShadowPicture picture = pictures.render(view);
         std::vector<dvec3> points;
         const double half = std::tan(0.5 * view.camera.yfov);
-        for (int y = 0; y < view.height; ++y) {
-            for (int x = 0; x < view.width; ++x)
-                points.emplace_back(0.1 * half * ((2.0 * x + 1.0) / view.width - 1.0), 0.0,
-                                    0.1 * half * ((2.0 * y + 1.0) / view.height - 1.0));
+        for (int y = 0; y < view.size.height; ++y) {
+            for (int x = 0; x < view.size.width; ++x)
+                points.emplace_back(0.1 * half * ((2.0 * x + 1.0) / view.size.width - 1.0), 0.0,
+                                    0.1 * half * ((2.0 * y + 1.0) / view.size.height - 1.0));
         }
         const std::vector<double> seen = rays_find(scene, light, points);
         sum.resize(points.size());
         truth.resize(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
-            ASSERT_GE(picture.visible[i], 0.0F) << "pixel " << i << " is no floor";
-            sum[i] += picture.visible[i];
+            ASSERT_GE(picture.light.shares[i], 0.0F) << "pixel " << i << " is no floor";
+            sum[i] += picture.light.shares[i];
             truth[i] += seen[i];
         }
     }

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "reference/area_light.h"
 #include "reference/image.h"
-#include "renderer/soft_shadow.h"
+#include "renderer/shadow/map_shadows.h"
 #include "scenes/load.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/soft_shadow_scene.h"
@@ -19,8 +19,8 @@ namespace {
 
 using glm::dvec3;
 using optics::Light;
-using renderer::SoftShadowPicture;
-using renderer::SoftShadowRenderer;
+using renderer::MapShadows;
+using renderer::ShadowPicture;
 using renderer::View;
 
 class SoftShadowPictures : public GlTest {};
@@ -31,16 +31,16 @@ scenes::NodeSelection only(std::size_t node, std::size_t count) {
     return selection;
 }
 
-SoftShadowRenderer renderer_of(const ShadowScene& scene, const renderer::SoftShadowOptions& options = {}) {
-    return SoftShadowRenderer(scene.scene, scene.whole, only(1, 2), only(0, 2), options);
+MapShadows renderer_of(const ShadowScene& scene, const renderer::SoftShadowOptions& options = {}) {
+    return MapShadows({scene.scene, scene.whole, only(1, 2), only(0, 2)}, options);
 }
 
 View view_of(const Light& light) {
     View view;
-    view.width = 120;
-    view.height = 90;
+    view.size = {120, 90};
     view.camera = {.eye = {2.0, 3.0, 4.0}, .target = {0.0, 0.2, 0.0}, .up = {0, 1, 0}, .yfov = 0.8};
     view.light = light;
+    view.shadow.kind = renderer::ShadowQuality::Kind::rays;
     return view;
 }
 
@@ -54,9 +54,9 @@ dvec3 direction_of(const View& view, int x, int y) {
     const dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
     const dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const double half = std::tan(0.5 * view.camera.yfov);
-    const double across = (2.0 * x + 1.0) / view.width - 1.0;
-    const double above = 1.0 - (2.0 * y + 1.0) / view.height;
-    return glm::normalize(forward + across * half * view.width / view.height * right +
+    const double across = (2.0 * x + 1.0) / view.size.width - 1.0;
+    const double above = 1.0 - (2.0 * y + 1.0) / view.size.height;
+    return glm::normalize(forward + across * half * view.size.width / view.size.height * right +
                           above * half * glm::cross(right, forward));
 }
 
@@ -64,11 +64,11 @@ Truth truth_of(const ShadowScene& scene, const View& view) {
     const reference::ImageTracer all(scene.scene, scene.whole);
     const reference::ImageTracer occluders(scene.scene, scene.occluders);
     Truth truth;
-    truth.image = all.trace(view.camera, {}, view.width, view.height);
+    truth.image = all.trace(view.camera, {}, view.size.width, view.size.height);
     std::vector<dvec3> points;
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
-            const float depth = truth.image.depth[std::size_t(y * view.width + x)];
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
+            const float depth = truth.image.depth[std::size_t(y * view.size.width + x)];
             points.push_back(view.camera.eye +
                              (std::isfinite(depth) ? double(depth) : 0.0) * direction_of(view, x, y));
         }
@@ -85,8 +85,8 @@ TEST_F(SoftShadowPictures, PixelsSeeTheLightThatRaysSee) {
     floor.insert(floor.end(), slope.begin(), slope.end());
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 4), floor);
     const View view = view_of(optics::aimed_light({0.6, 3.0, 1.6}, {0.0, 0.5, 0.0}, 0.5, 0.5));
-    SoftShadowRenderer shadows = renderer_of(scene);
-    const SoftShadowPicture picture = shadows.render(view);
+    MapShadows shadows = renderer_of(scene);
+    const ShadowPicture picture = shadows.render(view);
     const Truth truth = truth_of(scene, view);
     double sum = 0.0;
     int shadowed = 0;
@@ -94,18 +94,18 @@ TEST_F(SoftShadowPictures, PixelsSeeTheLightThatRaysSee) {
     int mismatched = 0;  // a pixel's centre on an edge belongs to either side
     for (std::size_t i = 0; i < truth.visible.size(); ++i) {
         const bool floor_seen = truth.image.primitive[i] < floor.size() / 3;
-        const bool same = floor_seen == (picture.visible[i] >= 0.0F) &&
-                          std::isfinite(picture.distance[i]) == std::isfinite(truth.image.depth[i]);
+        const bool same = floor_seen == (picture.light.shares[i] >= 0.0F) &&
+                          std::isfinite(shadows.distances()[i]) == std::isfinite(truth.image.depth[i]);
         if (!same) ++mismatched;
         if (!same || !floor_seen) continue;
         ++receivers;
-        EXPECT_NEAR(picture.distance[i], truth.image.depth[i], 1e-3) << "pixel " << i;
-        if (truth.visible[i] >= 1.0 && picture.visible[i] >= 1.0F) continue;
+        EXPECT_NEAR(shadows.distances()[i], truth.image.depth[i], 1e-3) << "pixel " << i;
+        if (truth.visible[i] >= 1.0 && picture.light.shares[i] >= 1.0F) continue;
         ++shadowed;
-        sum += std::abs(truth.visible[i] - double(picture.visible[i]));
+        sum += std::abs(truth.visible[i] - double(picture.light.shares[i]));
     }
-    EXPECT_LT(mismatched, view.width * view.height / 200);
-    EXPECT_GT(receivers, view.width * view.height / 5);
+    EXPECT_LT(mismatched, view.size.width * view.size.height / 200);
+    EXPECT_GT(receivers, view.size.width * view.size.height / 5);
     EXPECT_GT(shadowed, 150);
     EXPECT_LT(sum / shadowed, 0.03);
 }
@@ -113,19 +113,18 @@ TEST_F(SoftShadowPictures, PixelsSeeTheLightThatRaysSee) {
 TEST_F(SoftShadowPictures, ShadowIsDarkerAndTheRestIsAsWithoutIt) {
     const ShadowScene scene(square({0.0, 0.8, 0.0}, 0.4), square({0.0, 0.0, 0.0}, 1.5));
     const View view = view_of(light_above(3.0, 0.3, 0.3));
-    SoftShadowRenderer shadows = renderer_of(scene);
-    const SoftShadowPicture picture = shadows.render(view);
-    const SoftShadowPicture bare =
-        SoftShadowRenderer(scene.scene, scene.whole, scenes::NodeSelection(2, false), only(0, 2))
-            .render(view);
+    MapShadows shadows = renderer_of(scene);
+    const ShadowPicture picture = shadows.render(view);
+    const ShadowPicture bare =
+        MapShadows({scene.scene, scene.whole, scenes::NodeSelection(2, false), only(0, 2)}).render(view);
     int dark = 0;
-    for (std::size_t i = 0; i < picture.visible.size(); ++i) {
-        if (picture.visible[i] < 0.0F) continue;
+    for (std::size_t i = 0; i < picture.light.shares.size(); ++i) {
+        if (picture.light.shares[i] < 0.0F) continue;
         const int difference = int(bare.image.rgba[4 * i]) - int(picture.image.rgba[4 * i]);
-        if (picture.visible[i] >= 1.0F) {
+        if (picture.light.shares[i] >= 1.0F) {
             EXPECT_EQ(difference, 0) << "lit pixel " << i;
-        } else if (picture.visible[i] < 0.9F) {
-            EXPECT_GT(difference, 3) << "shadowed pixel " << i << ", visible " << picture.visible[i];
+        } else if (picture.light.shares[i] < 0.9F) {
+            EXPECT_GT(difference, 3) << "shadowed pixel " << i << ", visible " << picture.light.shares[i];
             ++dark;
         }
     }
@@ -138,18 +137,19 @@ TEST_F(SoftShadowPictures, OutsideTheLightsWindowAllIsLit) {
     const ShadowScene scene(square({0.0, 0.8, 0.0}, 0.4), square({0.0, 0.0, 0.0}, 1.5));
     const View view = view_of(light_above(3.0, 0.3, 0.3));
     const renderer::ShadowFrustum frustum{0.1, {{-0.3, -0.3}, {0.3, 0.3}}, {{0.0, 0.0}, {0.5, 0.5}}};
-    SoftShadowRenderer shadows = renderer_of(scene);
-    const SoftShadowPicture picture = shadows.render(view, frustum);
+    MapShadows shadows = renderer_of(scene);
+    shadows.set_frustum(frustum);
+    const ShadowPicture picture = shadows.render(view);
     int inside = 0;
-    for (int y = 0; y < view.height; ++y) {
-        for (int x = 0; x < view.width; ++x) {
-            const std::size_t i = std::size_t(y * view.width + x);
-            if (picture.visible[i] < 0.0F) continue;
-            const dvec3 point = view.camera.eye + double(picture.distance[i]) * direction_of(view, x, y);
+    for (int y = 0; y < view.size.height; ++y) {
+        for (int x = 0; x < view.size.width; ++x) {
+            const std::size_t i = std::size_t(y * view.size.width + x);
+            if (picture.light.shares[i] < 0.0F) continue;
+            const dvec3 point = view.camera.eye + double(shadows.distances()[i]) * direction_of(view, x, y);
             if (point.x < -0.01 || point.z < -0.01) {
-                EXPECT_EQ(picture.visible[i], 1.0F) << "pixel (" << x << ", " << y << ")";
+                EXPECT_EQ(picture.light.shares[i], 1.0F) << "pixel (" << x << ", " << y << ")";
             }
-            inside += picture.visible[i] < 0.5F ? 1 : 0;
+            inside += picture.light.shares[i] < 0.5F ? 1 : 0;
         }
     }
     EXPECT_GT(inside, 50);
@@ -188,14 +188,14 @@ TEST_F(SoftShadowPictures, HolesOfAnAlphaMaskLetTheLightThrough) {
             << "texel (" << point.x << ", " << point.y << ")";
     }
     // The hole shows the floor, the rest is red.
-    SoftShadowRenderer shadows = renderer_of(scene);
+    MapShadows shadows = renderer_of(scene);
     View view = view_of(light);
     view.camera = {.eye = {0.0, 4.0, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0, 0, -1}, .yfov = 0.5};
-    const SoftShadowPicture picture = shadows.render(view);
-    const auto at = [&](int x) { return std::size_t(45 * view.width + x); };
-    EXPECT_EQ(picture.visible[at(50)], -1.0F);
+    const ShadowPicture picture = shadows.render(view);
+    const auto at = [&](int x) { return std::size_t(45 * view.size.width + x); };
+    EXPECT_EQ(picture.light.shares[at(50)], -1.0F);
     EXPECT_GT(picture.image.rgba[4 * at(50)], picture.image.rgba[4 * at(50) + 1] + 50);
-    EXPECT_GE(picture.visible[at(70)], 0.0F);
+    EXPECT_GE(picture.light.shares[at(70)], 0.0F);
 }
 
 TEST_F(SoftShadowPictures, RefusesNodesThatAreBothAndPicturesThatAreNone) {
@@ -209,11 +209,11 @@ TEST_F(SoftShadowPictures, RefusesNodesThatAreBothAndPicturesThatAreNone) {
         return false;
     };
     EXPECT_TRUE(refused([&] {
-        (void)SoftShadowRenderer(scene.scene, scene.whole, scenes::NodeSelection(2, true), only(0, 2));
+        (void)MapShadows({scene.scene, scene.whole, scenes::NodeSelection(2, true), only(0, 2)});
     }));
-    SoftShadowRenderer shadows = renderer_of(scene);
+    MapShadows shadows = renderer_of(scene);
     View view = view_of(light_above(3.0, 0.3, 0.3));
-    view.width = 0;
+    view.size.width = 0;
     EXPECT_TRUE(refused([&] { (void)shadows.render(view); }));
 }
 

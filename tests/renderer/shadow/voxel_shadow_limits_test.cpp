@@ -1,5 +1,5 @@
 // Where shadow rays through voxels fail, or might: each test asserts what renderer.h says of it, at
-// View::shadow_rays. Lengths are in voxels where nothing else is said.
+// View::shadow. Lengths are in voxels where nothing else is said.
 
 #include <algorithm>
 #include <array>
@@ -17,6 +17,7 @@
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_rays.h"
 #include "tests/support/test_scenes.h"
+#include "tests/support/voxel_renderer.h"
 #include "voxelizer/grid.h"
 
 namespace cairn::test {
@@ -36,9 +37,9 @@ constexpr int picture_size = 112;  // pixels a side
 /// Looks straight down on the floor y = 0, so that a pixel is a point of it.
 View from_above() {
     View view;
-    view.width = view.height = picture_size;
+    view.size.width = view.size.height = picture_size;
     view.camera = {.eye = {0.0, 6.0, 0.0}, .target = {0.0, 0.0, 0.0}, .up = {0.0, 0.0, -1.0}, .yfov = 0.5};
-    view.pixel_error = 1e-6;
+    view.detail.pixel_error = 1e-6;
     return view;
 }
 
@@ -60,7 +61,7 @@ View lit_by_square(const dvec3& middle, double half_x, double half_z, int rays) 
     view.light.shape = optics::LightShape::rectangle;
     view.light.half_u = {half_x, 0.0, 0.0};
     view.light.half_v = {0.0, 0.0, half_z};
-    view.shadow_rays = rays;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
     return view;
 }
 
@@ -84,10 +85,10 @@ dvec3 floor_point(const View& view, int x, int y) {
 /// Calls for every pixel with its point of the floor and its share of the light.
 void each(const optics::LightShares& found, const View& view,
           const std::function<void(const dvec3&, double)>& judge) {
-    for (int y = 0; y < view.height; ++y)
-        for (int x = 0; x < view.width; ++x)
+    for (int y = 0; y < view.size.height; ++y)
+        for (int x = 0; x < view.size.width; ++x)
             judge(floor_point(view, x, y),
-                  found.shares[std::size_t(y) * std::size_t(view.width) + std::size_t(x)]);
+                  found.shares[std::size_t(y) * std::size_t(view.size.width) + std::size_t(x)]);
 }
 
 constexpr int resolution = 64;  // so four bricks an axis
@@ -99,7 +100,7 @@ public:
         : occluder_(colored(occluder, glm::vec4(1.0F))),
           snapshot_(scenes::take_snapshot(occluder_)),
           tracer_(occluder_, snapshot_),
-          renderer_(occluder_, snapshot_, {.max_resolution = resolution}),
+          renderer_(voxel_renderer(occluder_, snapshot_, {.tree = {.max_resolution = resolution}})),
           voxel_(voxelizer::grid_around(snapshot_.bounds, resolution).voxel_size) {
         renderer_.set_mix(
             {.meshes = std::make_shared<renderer::MeshRaster>(floor_, scenes::take_snapshot(floor_)),
@@ -108,15 +109,15 @@ public:
     }
 
     [[nodiscard]] double voxel() const { return voxel_; }
-    [[nodiscard]] optics::LightShares shares(const View& view) { return renderer_.light_shares(view); }
+    [[nodiscard]] optics::LightShares shares(const View& view) { return renderer_.light(view).light; }
     void each_pixel(const View& view, const std::function<void(const dvec3&, double)>& judge) {
         each(shares(view), view, judge);
     }
     /// What the floor sees of the view's light past the triangles, pixel by pixel.
     [[nodiscard]] std::vector<double> truth(const View& view) const {
         std::vector<dvec3> points;
-        for (int y = 0; y < view.height; ++y)
-            for (int x = 0; x < view.width; ++x)
+        for (int y = 0; y < view.size.height; ++y)
+            for (int x = 0; x < view.size.width; ++x)
                 points.push_back(floor_point(view, x, y));
         std::vector<double> seen;
         for (const reference::LightVisibility& there : reference::area_light_visibility(
@@ -188,7 +189,7 @@ TEST_F(VoxelShadowLimits, PointLightCastsTheHardShadow) {
     VoxelsOverFloor scene(level(0.3F, 1.0F));
     View view = lit_from({0.1, 3.0, -0.05});
     view.light.radius = 0.0;
-    view.shadow_rays = 64;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 64};
     expect_shadow_of_square(scene, view, 1.0, 0.3);
 }
 
@@ -234,7 +235,7 @@ TEST_F(VoxelShadowLimits, LightThatTouchesItsOccluder) {
     VoxelsOverFloor scene(level(0.5F, 2.0F));
     View view = lit_from({0.0, 2.0 - 0.15, 0.0});
     view.light.radius = 0.15;
-    view.shadow_rays = 64;
+    view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = 64};
     const std::vector<double> truth = scene.truth(view);
     const optics::LightShares found = scene.shares(view);
     double sum = 0.0;
@@ -271,7 +272,7 @@ public:
         : scene_(colored(joined({level(1.5F, 0.0F), thing}), glm::vec4(1.0F))),
           snapshot_(scenes::take_snapshot(scene_)),
           tracer_(scene_, snapshot_),
-          renderer_(scene_, snapshot_, {.max_resolution = 2 * resolution}),
+          renderer_(voxel_renderer(scene_, snapshot_, {.tree = {.max_resolution = 2 * resolution}})),
           voxel_(voxelizer::grid_around(snapshot_.bounds, 2 * resolution).voxel_size) {
         if (as_mesh) {
             renderer_.set_mix({.meshes = std::make_shared<renderer::MeshRaster>(scene_, snapshot_),
@@ -285,7 +286,7 @@ public:
     /// Each pixel that shows the floor, but for its last voxels: its point, share, and whether it is in
     /// shadow.
     void each_of_floor(const View& view, const std::function<void(const dvec3&, double, bool)>& judge) {
-        each(renderer_.light_shares(view), view, [&](const dvec3& p, double share) {
+        each(renderer_.light(view).light, view, [&](const dvec3& p, double share) {
             if (std::max(std::abs(p.x), std::abs(p.z)) > 1.4 || blocked(p, view.camera.eye - p)) return;
             judge(p, share, blocked(p, view.light.towards));
         });

@@ -1,0 +1,95 @@
+#include "app/command_line.h"
+
+#include <algorithm>
+#include <memory>
+
+#include <cairn/version.h>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "renderer/open_content.h"
+#include "scenes/builtin/builtin.h"
+
+namespace cairn::app {
+namespace {
+
+std::string footer() {
+    std::string text = "Built-in scenes:\n";
+    for (const scenes::Builtin& builtin : scenes::builtins()) {
+        text += fmt::format("  builtin:{:<14}{}\n", builtin.name, builtin.description);
+    }
+    for (const renderer::BuiltinVolume& builtin : renderer::builtin_volumes()) {
+        text += fmt::format("  builtin:{:<14}{}\n", builtin.name, builtin.description);
+    }
+    text +=
+        "\nExit codes: 0 done, 1 a comparison found a difference, 2 wrong usage, 3 bad input file,\n"
+        "4 no usable OpenGL 4.5 context, 5 out of memory, 130 interrupted.\n"
+        "With CAIRN_GL_DEBUG in the environment, any error that OpenGL reports ends the work.\n"
+        "\n\"cairn VERB --help\" lists what a verb takes.";
+    return text;
+}
+
+/// Refuses a missing or unknown verb, for which CLI11 has odd words.
+void check_verb(const CLI::App& command, const std::string* argument) {
+    if (argument != nullptr && argument->starts_with('-')) return;  // an option
+    std::string verbs;
+    for (const CLI::App* verb : command.get_subcommands([](const CLI::App*) { return true; })) {
+        if (argument != nullptr && verb->get_name() == *argument) return;
+        verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+    }
+    throw Error(Fault::usage, "",
+                argument == nullptr ? "a verb is missing" : fmt::format("there is no verb \"{}\"", *argument),
+                fmt::format("verbs: {}; \"cairn --help\" tells more", verbs));
+}
+
+/// What CLI11 found wrong, in our words.
+Error usage_error(const CLI::App& command, const CLI::ParseError& error) {
+    std::string asked = "cairn";
+    for (const CLI::App* verb : command.get_subcommands())
+        asked += " " + verb->get_name();
+    std::string what = error.what();
+    if (error.get_exit_code() == int(CLI::ExitCodes::ArgumentMismatch)) {
+        what = what.substr(0, what.find(':')) + " takes one value, once";
+    }
+    return {Fault::usage, "", what, fmt::format("\"{} --help\" lists what it takes", asked)};
+}
+
+void add_verbs(CLI::App& command, Work& chosen) {
+    add_info(command, chosen);
+    add_voxelize(command, chosen);
+    add_check(command, chosen);
+    add_render(command, chosen);
+    add_view(command, chosen);
+    add_shadow(command, chosen);
+    add_export(command, chosen);
+    add_bench(command, chosen);
+}
+
+}  // namespace
+
+Work read_command_line(const std::vector<std::string>& arguments) {
+    const auto command = std::make_shared<CLI::App>(
+        "Voxelizes glTF scenes on the GPU, and renders them through a bounded voxel cache.", "cairn");
+    Work chosen;
+    add_verbs(*command, chosen);
+    command->require_subcommand(0, 1);
+    command->set_version_flag("--version", "cairn " CAIRN_VERSION);
+    command->get_formatter()->column_width(38);
+    command->footer(footer());
+    check_verb(*command, arguments.empty() ? nullptr : &arguments.front());
+    std::vector<std::string> last_first(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
+    try {
+        command->parse(std::move(last_first));
+    } catch (const CLI::Success& asked_for_help) {
+        return [command, asked_for_help] {
+            command->exit(asked_for_help);  // prints it
+            return ExitCode::done;
+        };
+    } catch (const CLI::ParseError& error) {
+        throw usage_error(*command, error);
+    }
+    if (!chosen) check_verb(*command, nullptr);
+    return chosen;
+}
+
+}  // namespace cairn::app

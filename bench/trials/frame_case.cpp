@@ -1,0 +1,159 @@
+#include "bench/trials/frame_case.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "base/error.h"
+#include "bench/trials/real_scenes.h"
+#include "renderer/produce/dense_field.h"
+#include "renderer/produce/made_fields.h"
+#include "renderer/produce/volume_content.h"
+#include "scenes/load.h"
+#include "scenes/snapshot.h"
+#include "scenes/volume/volume.h"
+
+namespace cairn::bench {
+namespace {
+
+constexpr double shell_inner = 0.25;
+constexpr double shell_outer = 0.30;
+constexpr std::int64_t copy_resolution = 256;
+/// Of the densest, through a finest voxel: so solids are opaque after a few, however fine they are.
+constexpr double optical_depth = 1.0;
+/// What does not show of a scan, as a share of its densities.
+constexpr double scan_empty = 0.3;
+
+/// @param empty  density that does not show; 0 where voxels that are coarse and thin are to show as such.
+renderer::TransferFunction opaque(double empty, double voxel_size) {
+    return renderer::TransferFunction(
+        {{empty, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), optical_depth / voxel_size}});
+}
+
+/// A field elsewhere.
+class Moved final : public renderer::Field {
+public:
+    Moved(std::shared_ptr<const renderer::Field> field, const glm::dvec3& origin)
+        : field_(std::move(field)), frame_(field_->frame()) {
+        frame_.origin = origin;
+    }
+    [[nodiscard]] const renderer::FieldFrame& frame() const override { return frame_; }
+    void fill(int coarseness, const glm::i64vec3& low, const glm::ivec3& count,
+              float* values) const override {
+        field_->fill(coarseness, low, count, values);
+    }
+    [[nodiscard]] renderer::FieldRange range(const glm::i64vec3& low,
+                                             const glm::i64vec3& high) const override {
+        return field_->range(low, high);
+    }
+
+private:
+    std::shared_ptr<const renderer::Field> field_;
+    renderer::FieldFrame frame_;
+};
+
+}  // namespace
+
+struct FrameCase::Data {
+    struct AtRest {
+        scenes::Scene scene;
+        scenes::Snapshot snapshot;  ///< points into the scene
+    };
+    /// The shell of builtin:hollow-sphere, or copies of it.
+    struct Shells {
+        bool are_repeated = false;
+    };
+    struct Sponge {};
+
+    std::variant<Sponge, Shells, scenes::Volume, AtRest> shown;
+
+    [[nodiscard]] const AtRest* scene() const { return std::get_if<AtRest>(&shown); }
+    [[nodiscard]] const scenes::Volume* volume() const { return std::get_if<scenes::Volume>(&shown); }
+    [[nodiscard]] bool is_sponge() const { return std::holds_alternative<Sponge>(shown); }
+};
+
+FrameCase::FrameCase(const std::string& path) : data_(std::make_unique<Data>()), name_(scene_name(path)) {
+    if (path == "builtin:hollow-sphere" || path == "builtin:spheres-repeated") {
+        data_->shown = Data::Shells{path == "builtin:spheres-repeated"};
+        bounds_ = {glm::dvec3(-0.5), glm::dvec3(0.5)};
+    } else if (path == "builtin:sponge") {
+        data_->shown = Data::Sponge{};
+        bounds_ = {glm::dvec3(0.0), glm::dvec3(1.0)};
+    } else if (scenes::is_volume_file(path)) {
+        bounds_ = data_->shown.emplace<scenes::Volume>(scenes::load_volume(path)).bounds();
+    } else {
+        Data::AtRest& rest = data_->shown.emplace<Data::AtRest>();
+        rest.scene = scenes::load(path);
+        rest.snapshot = scenes::take_snapshot(rest.scene);
+        bounds_ = rest.snapshot.bounds;
+    }
+}
+
+FrameCase::~FrameCase() = default;
+FrameCase::FrameCase(FrameCase&&) noexcept = default;
+FrameCase& FrameCase::operator=(FrameCase&&) noexcept = default;
+
+Cell FrameCase::triangles() const {
+    const Data::AtRest* const scene = data_->scene();
+    return scene != nullptr ? Cell(std::int64_t(scene->snapshot.triangle_count)) : Cell{};
+}
+
+renderer::TreeOptions FrameCase::fitted(const renderer::TreeOptions& tree) const {
+    if (!data_->is_sponge()) return tree;
+    const renderer::TreeOptions usual = renderer::usual_tree("builtin:sponge");
+    if (tree.n == usual.n) return {.n = tree.n, .m = tree.m, .max_resolution = usual.max_resolution};
+    if (tree.n != renderer::TreeOptions{}.n || tree.m != renderer::TreeOptions{}.m)
+        throw Error(Fault::usage, "tree", "the sponge is cut in thirds", "choose N = 3");
+    return usual;
+}
+
+FrameCase::Shown FrameCase::shown_field(const renderer::TreeOptions& tree) const {
+    if (const scenes::Volume* const volume = data_->volume()) {
+        const glm::dvec3& spacing = volume->spacing;
+        const double voxel_size = std::min({spacing.x, spacing.y, spacing.z});
+        return {std::make_shared<renderer::DenseField>(*volume, tree.n), opaque(scan_empty, voxel_size)};
+    }
+    const std::int64_t resolution = renderer::tree_shape_of(tree).resolution();
+    const bool are_repeated = std::get<Data::Shells>(data_->shown).are_repeated;
+    const int copies = are_repeated ? int(std::max<std::int64_t>(resolution / copy_resolution, 1)) : 1;
+    const double side = 1.0 / copies;
+    std::shared_ptr<const renderer::Field> field =
+        std::make_shared<renderer::HollowSphere>(tree.n, resolution / copies, shell_inner, shell_outer, side);
+    if (copies > 1) {
+        const auto repeated = std::make_shared<renderer::RepeatedField>(std::move(field), copies);
+        field = std::make_shared<Moved>(repeated, bounds_.low);
+    }
+    return {std::move(field), opaque(0.0, 1.0 / double(resolution))};
+}
+
+renderer::Renderer FrameCase::make(const renderer::TreeOptions& tree, const gl::ShaderSource& shaders,
+                                   const renderer::RendererOptions& options,
+                                   const renderer::VolumeOptions& volume) const {
+    return renderer::Renderer(content(tree, shaders, volume), options, shaders);
+}
+
+renderer::TreeShape FrameCase::shape(const renderer::TreeOptions& tree) const {
+    if (data_->volume() == nullptr) return renderer::tree_shape_of(fitted(tree));
+    const Shown shown = shown_field(tree);
+    return renderer::make_volume_shape(shown.field->frame(), tree.n, tree.m, tree.max_resolution).tree;
+}
+
+std::unique_ptr<renderer::Content> FrameCase::content(const renderer::TreeOptions& tree,
+                                                      const gl::ShaderSource& shaders,
+                                                      const renderer::VolumeOptions& volume) const {
+    if (const Data::AtRest* const rest = data_->scene())
+        return renderer::surface_content(rest->scene, rest->snapshot, tree, shaders);
+    if (data_->is_sponge()) return renderer::fractal_content(fitted(tree), shaders);
+    Shown shown = shown_field(tree);
+    return renderer::volume_content(std::move(shown.field), shown.transfer, tree, volume);
+}
+
+renderer::View FrameCase::view(int width, int height) const {
+    renderer::View view;
+    view.size = {width, height};
+    view.camera = optics::framing_camera(bounds_, double(width) / height);
+    return view;
+}
+
+}  // namespace cairn::bench

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "renderer/pool/tree_options.h"
+#include "renderer/produce/transfer_function.h"
+#include "renderer/renderer.h"
+
+namespace cairn::bench {
+
+/// How frames of voxels are rendered, where a chart does not vary that itself; none: the chart's own choice.
+struct VoxelOptions {
+    std::optional<int> tree_n, brick_m;
+    std::optional<renderer::Traversal> traversal;
+    std::optional<renderer::TileQueries> tile_queries;
+    /// Of rays through volumes.
+    std::optional<int> steps_per_voxel;
+    /// Of volumes, in densities per voxel.
+    std::optional<double> gradient_threshold;
+    std::optional<double> frame_budget_ms;
+
+    /// A chart's own choice, but for what is given here.
+    /// @{
+    [[nodiscard]] renderer::TreeOptions tree(renderer::TreeOptions own = {}) const {
+        own.n = tree_n.value_or(own.n);
+        own.m = brick_m.value_or(own.n == 3 && own.m == renderer::TreeOptions{}.m ? 27 : own.m);
+        return own;
+    }
+    [[nodiscard]] renderer::RendererOptions renderer(renderer::RendererOptions own = {}) const {
+        own.march.traversal = traversal.value_or(own.march.traversal);
+        own.march.tile_queries = tile_queries.value_or(own.march.tile_queries);
+        return own;
+    }
+    [[nodiscard]] renderer::VolumeOptions volume(renderer::VolumeOptions own = {}) const {
+        own.steps_per_voxel = steps_per_voxel.value_or(own.steps_per_voxel);
+        own.full_gradient = gradient_threshold.value_or(own.full_gradient);
+        return own;
+    }
+    [[nodiscard]] renderer::Request request() const {
+        renderer::Request request;
+        if (frame_budget_ms) request.budget = renderer::Milliseconds(*frame_budget_ms);
+        return request;
+    }
+    /// @}
+};
+
+/// Which VoxelOptions a chart takes.
+struct VoxelOptionsTaken {
+    bool tree = false;  ///< N and M
+    bool traversal = false;
+    bool tile_queries = false;
+    bool volume = false;  ///< steps per voxel and the gradient's threshold
+    bool frame_budget = false;
+};
+
+}  // namespace cairn::bench

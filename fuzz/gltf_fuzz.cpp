@@ -1,0 +1,24 @@
+#include <utility>
+
+#include "base/error.h"
+#include "fuzz/scratch.h"
+#include "fuzz/targets.h"
+#include "scenes/load.h"
+#include "scenes/snapshot.h"
+
+namespace cairn::fuzz {
+
+void gltf(Bytes file) {
+    // Whether it is a .glb is decided by its first bytes, not by its name.
+    const std::string path = scratch_file("scene.glb", file);
+    try {
+        const scenes::Scene scene = scenes::load(path);
+        (void)scenes::take_snapshot(scene);
+        for (int animation = 0; std::cmp_less(animation, scene.animations.size()); ++animation)
+            (void)scenes::take_snapshot(scene, {0.5, animation, std::nullopt});
+    } catch (const Error& error) {
+        if (error.fault() != Fault::input) broken_promise("a damaged scene is Fault::input");
+    }
+}
+
+}  // namespace cairn::fuzz

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "gl/buffer.h"
+#include "gl/handle.h"
+#include "renderer/produce/transfer_function.h"
+
+namespace cairn::renderer {
+
+/// What the shaders of volumes read: the pre-integrated transfer function and the numbers of VolumeView.
+class TransferTable {
+public:
+    /// @param voxel_size  world units; of the tree's finest voxels.
+    /// @throws Error (Fault::usage) for options out of range.
+    TransferTable(const TransferFunction& function, const VolumeOptions& options, double voxel_size);
+    void bind() const;
+
+private:
+    gl::TextureHandle table_;
+    gl::Buffer view_;
+};
+
+}  // namespace cairn::renderer
