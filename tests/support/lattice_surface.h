@@ -13,6 +13,7 @@
 #include "reference/separating_axes.h"
 #include "scenes/snapshot.h"
 #include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::test {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
 
 namespace cairn::voxelizer {
 namespace {

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "scenes/transform.h"
 #include "shaders/interop/grid.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface_materials.h"
 
 namespace cairn::voxelizer {

@@ -8,7 +8,6 @@
 
 #include "gl/buffer.h"
 #include "scenes/snapshot.h"
-#include "shaders/interop/surface.h"
 #include "voxelizer/grid.h"
 
 namespace cairn::interop {

@@ -16,7 +16,6 @@
 #include "base/error.h"
 #include "renderer/march/march_programs.h"
 #include "renderer/pool/tree_shape.h"
-#include "shaders/interop/march.h"
 #include "shaders/interop/tile_query.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
