@@ -6,6 +6,7 @@
 #include "bench/peers/cpu_row_span.h"
 #include "bench/peers/three_directions.h"
 #include "gl/context.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/files/voxel_tiles.h"
 #include "voxelizer/methods/pyramid_builder.h"
 #include "voxelizer/methods/voxelize_tiles.h"

@@ -21,7 +21,6 @@
 #include "renderer/produce/content_program.h"
 #include "renderer/produce/tile_query.h"
 #include "shaders/interop/march.h"
-#include "shaders/interop/tile_query.h"
 #include "shaders/interop/windows.h"
 
 namespace cairn::renderer {

@@ -5,7 +5,6 @@
 
 #include "base/error.h"
 #include "renderer/march/march_options.h"
-#include "shaders/interop/march.h"
 #include "shaders/interop/tile_query.h"
 #include "shaders/interop/windows.h"
 

@@ -9,11 +9,13 @@ namespace cairn::renderer {
 struct ContentProgram {
     std::string primary = "march/primary.comp.glsl";
     std::string shadow = "march/shadow.comp.glsl";
-    /// Steps in which a ray crosses a voxel of a volume, [1, volume_most_steps]; 0: the content is a surface,
-    /// whose shadow rays know SHOW_LIGHT and cones.
+    /// Steps in which a ray crosses a voxel of a volume, at least 1; 0: the content is a surface, whose
+    /// shadow rays know SHOW_LIGHT and cones.
     int volume_steps = 0;
-    bool has_constant = false;  ///< tiles may hold one value that is not 0, without a brick
-    bool has_final = false;     ///< tiles may have nothing finer to show
+    /// Tiles may hold one value that is not 0, without a brick.
+    bool has_constant = false;
+    /// Tiles may have nothing finer to show.
+    bool has_final = false;
     /// Called before each pass; may be empty.
     std::function<void()> bind = nullptr;
     [[nodiscard]] bool of_surfaces() const { return volume_steps == 0; }

@@ -1,6 +1,6 @@
 // From what a primary ray gathered and how much of the light reaches it, to a pixel.
 #include "interop/march.h"
-#include "interop/mesh.h"
+#include "interop/mesh.h"  // here, because a file is included once, and the next place is under a condition
 #include "march/picture.glsl"
 #include "march/pixel_ray.glsl"
 #include "march/ray_state.glsl"

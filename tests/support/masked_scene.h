@@ -8,6 +8,7 @@
 
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
+#include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::test {

@@ -9,7 +9,6 @@
 #include "gl/shader_source.h"
 #include "renderer/march/march_programs.h"
 #include "renderer/produce/fractal_content.h"
-#include "shaders/interop/march.h"
 #include "shaders/interop/tile_query.h"
 #include "shaders/interop/windows.h"
 

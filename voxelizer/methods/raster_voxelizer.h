@@ -28,8 +28,8 @@ enum class LayerPath : std::uint8_t {
 struct RasterVariant {
     int corners = 3;     ///< of a primitive: 3, 2 or 1
     bool cover = false;  ///< primitives are enlarged to all pixels that they touch
-    int axes =
-        1;  ///< directions in which a primitive is drawn: 1 or 3; 0: the one that sees it most squarely
+    /// Directions in which a primitive is drawn: 1 or 3; 0: the one that sees it most squarely.
+    int axes = 1;
     bool masked = false;  ///< alpha masks are looked at
     int targets = 1;      ///< of the slices: 1, 2, 4 or 8
     [[nodiscard]] auto operator<=>(const RasterVariant&) const = default;

@@ -14,8 +14,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "renderer/march/march_programs.h"
 #include "renderer/pool/tree_shape.h"
-#include "shaders/interop/march.h"
 #include "shaders/interop/tile_query.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
@@ -89,10 +89,13 @@ protected:
     QueryBuffer::Told pass(QueryBuffer& buffer, std::vector<Asked>& asked, Round round, bool is_progressive) {
         gl::Program& program = is_progressive ? progressive_ : patient_;
         if (program.id() == 0) {
-            gl::Defines defines = renderer::make_tree_shape(4, 8, 512).defines(false);
-            defines.emplace_back("PROGRESSIVE", is_progressive ? "1" : "0");
+            gl::Defines defines = renderer::defines(
+                {.shape = renderer::make_tree_shape(4, 8, 512), .traversal = renderer::Traversal::restart});
+            for (const auto& define :
+                 renderer::defines(renderer::MarchVariant{.progressive = is_progressive}))
+                defines.push_back(define);
             defines.emplace_back("RAYS_WIDEN", "0");
-            defines.emplace_back("TRAVERSAL", std::to_string(TRAVERSAL_RESTART));
+            defines.emplace_back("VISIT_TURNS", "0");
             program = build_on_march(defines, asking_shader);
         }
         buffer.begin_frame({}, entries, slots);
