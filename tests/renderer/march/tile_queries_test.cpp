@@ -104,8 +104,8 @@ TEST_F(TileBlocksTest, EachBlockKeepsTheFirstFourDifferentTiles) {
 struct Scenery {
     Scenery()
         : shape_(renderer::make_tree_shape(2, 8, 512)),
-          cache_(shape_, std::make_unique<renderer::SurfaceContent>(shape_, surface(), gl::ShaderSource{}),
-                 {.node_pool_bytes = 8U << 20U, .brick_pool_bytes = 64U << 20U}) {
+          cache_(std::make_unique<renderer::SurfaceContent>(shape_, surface(), gl::ShaderSource{}),
+                 {.node_bytes = 8U << 20U, .brick_bytes = 64U << 20U}) {
         const auto side = float(shape_.resolution());
         view_.eye = {0.4F * side, 0.6F * side, 1.6F * side};
         view_.pixel_cone = 0.004F;

@@ -25,7 +25,7 @@ double flicker(SquareOverFloorScene& scene, int rays, bool cones) {
     int count = 0;
     for (int frame = 0; frame < frames; ++frame) {
         const glm::dvec2 moved = double(frame) * step;
-        const std::vector<float> now = scene.renderer().light_shares(scene.view(rays, cones, moved)).shares;
+        const std::vector<float> now = scene.renderer().light(scene.view(rays, cones, moved)).light.shares;
         for (int i = 0; frame > 0 && i < scene.size() * scene.size(); ++i) {
             const int x = i % scene.size();
             const int y = i / scene.size();
