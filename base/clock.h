@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 
-namespace cairn::renderer {
+namespace cairn {
 
 using Clock = std::chrono::steady_clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
@@ -25,4 +25,4 @@ inline Clock::time_point deadline_in(Milliseconds budget) {
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::min(budget, a_day));
 }
 
-}  // namespace cairn::renderer
+}  // namespace cairn

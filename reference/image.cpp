@@ -9,22 +9,17 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "base/clock.h"
 #include "optics/srgb.h"
 #include "reference/traced_scene.h"
 
 namespace cairn::reference {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr float infinite = std::numeric_limits<float>::infinity();
 /// Pixels of a packet: 4 x 2.
 constexpr int packet_width = 4;
 constexpr int packet_rays = 8;
-
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 void put(RTCRay8& to, int i, const RTCRay& ray) {
     to.org_x[i] = ray.org_x;

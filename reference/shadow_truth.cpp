@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/clock.h"
 #include "reference/light_cache.h"
 #include "reference/traced_scene.h"
 #include "scenes/transform.h"
@@ -113,8 +114,7 @@ SoftShares soft_shares(const ImageTracer& tracer, const ShadowQuestion& question
     if (!found) {
         const auto start = std::chrono::steady_clock::now();
         found = area_light_visibility(tracer, receivers.points, receivers.normals, question.light, options);
-        result.milliseconds =
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        result.milliseconds = milliseconds_since(start);
         if (kept) kept->save(*found);
     }
     std::vector<float> values;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "optics/srgb.h"
 
@@ -125,8 +126,7 @@ TracedScene::TracedScene(const scenes::Scene& scene, const scenes::Snapshot& sna
     if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) {
         throw Error(Fault::memory, "reference", "Embree cannot hold the triangles", "choose a smaller scene");
     }
-    build_milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    build_milliseconds = milliseconds_since(start);
 }
 
 void TracedScene::add(const scenes::Item& item, const PrimitiveLook& look) {

@@ -154,7 +154,7 @@ ExitCode run(const Options& options) {
     report.add("setup_ms", watch.lap_ms());
 
     renderer::Request request;
-    if (options.view.frame_budget_ms) request.budget = renderer::Milliseconds(*options.view.frame_budget_ms);
+    if (options.view.frame_budget_ms) request.budget = Milliseconds(*options.view.frame_budget_ms);
     renderer::Frame first;
     {
         Progress progress("rendering", quiet);

@@ -66,7 +66,7 @@ Band& Refinement::choose(const Pace& pace) {
 renderer::FrameStatistics Refinement::step(renderer::Renderer& renderer, Pace& pace) {
     Band& band = choose(pace);
     const auto [rows, statistics] =
-        renderer.render(view_, {.rows = band.rows, .budget = renderer::Milliseconds(pace.aim_ms())});
+        renderer.render(view_, {.rows = band.rows, .budget = Milliseconds(pace.aim_ms())});
     band.converged = statistics.converged;
     note_visit(band, rows, statistics);
     pace.learn(statistics.march_ms, double(view_.size.width) * band.rows.count);

@@ -64,7 +64,7 @@ void Viewer::warm_up() {
     renderer::View small = scaled(view_, 0.0);
     for (const renderer::Show show : {renderer::Show::levels, renderer::Show::surface}) {
         small.show = show;
-        (void)renderer_.render(small, {.budget = renderer::Milliseconds(0.0)});
+        (void)renderer_.render(small, {.budget = Milliseconds(0.0)});
     }
 }
 
@@ -171,7 +171,7 @@ double Viewer::rest(double now) const {
 void Viewer::render_moving_frame() {
     const double pixels = double(view_.size.width) * view_.size.height;
     const renderer::View small = scaled(view_, std::min(std::sqrt(frame_pace_.pixels() / pixels), 1.0));
-    auto [image, statistics] = renderer_.render(small, {.budget = renderer::Milliseconds(frame_aim_ms)});
+    auto [image, statistics] = renderer_.render(small, {.budget = Milliseconds(frame_aim_ms)});
     base_ = std::move(image);
     note(frame_ms_, statistics);
     // March and production alike: what counts is when the picture is there.
@@ -189,7 +189,7 @@ void Viewer::prefetch_for(renderer::View next) {
     moved_from_ = next.camera;
     if (!last_.converged || left_ms < least_prefetch_ms || from == next.camera) return;
     next.camera = optics::extrapolated(from, next.camera);
-    bricks_produced_ += renderer_.prefetch(next, renderer::Milliseconds(left_ms));
+    bricks_produced_ += renderer_.prefetch(next, Milliseconds(left_ms));
 }
 
 /// The next slice of the picture that grows; a coarse one that is whole makes room for a finer one.
@@ -209,7 +209,7 @@ void Viewer::grow() {
 
 /// For a camera that moves closer.
 void Viewer::look_ahead() {
-    const renderer::Prefetched ahead = renderer_.prefetch_finer(renderer::Milliseconds(ahead_ms));
+    const renderer::Prefetched ahead = renderer_.prefetch_finer(Milliseconds(ahead_ms));
     looks_ahead_ = ahead.more;
     bricks_produced_ += ahead.bricks;
 }

@@ -7,6 +7,8 @@
 #include <nanovdb/util/Ray.h>
 #include <tbb/parallel_for.h>
 
+#include "base/clock.h"
+
 namespace cairn::bench {
 namespace {
 
@@ -66,8 +68,7 @@ NanoVdbMarch::Result NanoVdbMarch::march(const GridView& view) const {
             result.hit[std::size_t(y) * std::size_t(view.width) + std::size_t(x)] = shadowed ? 1 : 2;
         }
     });
-    result.milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    result.milliseconds = milliseconds_since(start);
     return result;
 }
 

@@ -11,8 +11,6 @@
 
 namespace cairn::bench {
 
-using renderer::Clock;
-using renderer::milliseconds_since;
 using renderer::PassKind;
 
 namespace {

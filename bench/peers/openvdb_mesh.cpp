@@ -6,6 +6,8 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
+#include "base/clock.h"
+
 namespace cairn::bench {
 
 struct OpenVdbMesh::Mesh {
@@ -32,8 +34,7 @@ double OpenVdbMesh::convert(voxelizer::BitGrid* voxels) const {
     const auto start = std::chrono::steady_clock::now();
     const openvdb::FloatGrid::Ptr grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
         never, mesh, *one_voxel, 1.0F, 1.0F, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
-    const double milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const double milliseconds = milliseconds_since(start);
     if (voxels == nullptr) return milliseconds;
     const float half_diagonal = float(std::sqrt(0.75));
     for (auto value = grid->cbeginValueOn(); value; ++value) {

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "gl/draw_state.h"
 #include "shaders/interop/shadow_map.h"
@@ -344,8 +345,7 @@ PcfShadow::Result PcfShadow::shadow(const PcfOptions& options) {
     if (count_ > 0) evaluate(map, options);
     glFinish();
     Result result;
-    result.milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    result.milliseconds = milliseconds_since(start);
     result.shares = shares_.read_all<float>(count_);
     return result;
 }

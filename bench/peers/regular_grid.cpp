@@ -7,6 +7,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/clock.h"
 #include "base/error.h"
 
 namespace cairn::bench {
@@ -117,8 +118,7 @@ RegularGrid::Result RegularGrid::march(const renderer::View& view) const {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glFinish();
     Result result;
-    result.milliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    result.milliseconds = milliseconds_since(start);
     result.alpha = picture.read_all<float>(pixels);
     return result;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/clock.h"
 #include "bench/peers/pcf_shadow.h"
 #include "reference/area_light.h"
 #include "renderer/shadow_renderer.h"
@@ -14,7 +15,6 @@ namespace cairn::bench {
 namespace {
 
 using Contenders = std::vector<ShadowContender>;
-using Clock = std::chrono::steady_clock;
 using renderer::ShadowMethod;
 using Rays = reference::ImageTracer::Rays;
 
@@ -33,10 +33,6 @@ constexpr std::array map_sizes = {64, 128, 256, 512};
 constexpr int own_map_size = 256;
 constexpr std::array plain_map_sizes = {512, 1024, 2048, 4096};
 constexpr std::array strata = {1, 2, 3, 4, 6, 8, 16};
-
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// Pools are made when they are first needed, and shared by all that goes through the same voxels.
 ShadowRun run_voxels(const ShadowCase& shadow_case, std::optional<int> resolution,

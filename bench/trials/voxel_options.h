@@ -39,7 +39,7 @@ struct VoxelOptions {
     }
     [[nodiscard]] renderer::Request request() const {
         renderer::Request request;
-        if (frame_budget_ms) request.budget = renderer::Milliseconds(*frame_budget_ms);
+        if (frame_budget_ms) request.budget = Milliseconds(*frame_budget_ms);
         return request;
     }
     /// @}

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "base/clock.h"
 #include "base/error.h"
 
 namespace cairn::renderer {
@@ -199,7 +200,7 @@ void VolumeProducer::produce_batch(std::span<const BrickRequest> requests, const
     upload_.write(0, texels_.data(), texels_.size());
     for (std::size_t i = 0; i < requests.size(); ++i)
         pool.upload(requests[i].slot, upload_, i * texels, {masks_.data() + i * words, words});
-    upload_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    upload_ms_ += milliseconds_since(start);
 }
 
 VolumeContent::VolumeContent(const VolumeShape& shape, std::shared_ptr<const Field> field,

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "gl/limits.h"
 #include "shaders/interop/columns.h"
@@ -96,8 +97,7 @@ void ColumnPyramid::build(const gl::Buffer& bits) {
     }
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glFinish();
-    last_milliseconds_ =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    last_milliseconds_ = milliseconds_since(start);
 }
 
 }  // namespace cairn::renderer

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <string>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "shaders/interop/columns.h"
 #include "shaders/interop/mesh.h"
@@ -67,8 +68,7 @@ std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, 
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
         counts_.read(0, &counts, sizeof(counts));
     }
-    last_milliseconds_ =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    last_milliseconds_ = milliseconds_since(start);
     return image_.read_all<std::uint32_t>(pixels);
 }
 

@@ -164,9 +164,8 @@ TEST_F(ViewerTest, RowsAreThoseOfTheWholePicture) {
         const renderer::Rows some{row, std::min(37, view_.size.height - row)};
         renderer.forget_picture();
         const optics::Image image =
-            row % 2 == 0
-                ? renderer.render(view_, {.rows = some}).image
-                : renderer.render(view_, {.rows = some, .budget = renderer::Milliseconds(1e9)}).image;
+            row % 2 == 0 ? renderer.render(view_, {.rows = some}).image
+                         : renderer.render(view_, {.rows = some, .budget = Milliseconds(1e9)}).image;
         rows.insert(rows.end(), image.rgba.begin(), image.rgba.end());
     }
     EXPECT_EQ(rows, whole.rgba);

@@ -88,6 +88,7 @@ struct External {
     std::vector<std::string_view> seen_by;
 };
 
+// The first that a name begins with counts.
 const std::vector<External> externals = {
     {"tiny_gltf", {"scenes/gltf/"}},
     {"draco/", {"scenes/gltf/"}},
@@ -98,7 +99,8 @@ const std::vector<External> externals = {
     {"CLI/", {"app/"}},
     {"EGL/", {"gl/"}},
     {"GL/osmesa", {"gl/"}},
-    {"glad/", {"gl/", "voxelizer/", "renderer/", "app/"}},
+    {"glad/", {"gl/", "voxelizer/", "renderer/", "app/", "bench/"}},
+    {"cairn/version.h", {"app/"}},
     {"cairn/", {}},
 };
 
@@ -123,9 +125,11 @@ std::string fault_of(const fs::path& root, const std::string& file, bool quoted,
     if (begins_with_any("", folder->may_include)) return {};
     if (!quoted) {
         for (const External& external : externals) {
-            if (name.starts_with(external.name) && !begins_with_any(file, external.seen_by)) {
-                return fmt::format("<{}> is for {} only", name, fmt::join(external.seen_by, " and "));
-            }
+            if (!name.starts_with(external.name)) continue;
+            if (begins_with_any(file, external.seen_by)) return {};
+            return external.seen_by.empty()
+                       ? fmt::format("<{}> is for who uses the library", name)
+                       : fmt::format("<{}> is for {} only", name, fmt::join(external.seen_by, " and "));
         }
         return {};
     }

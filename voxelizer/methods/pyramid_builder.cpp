@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/clock.h"
 #include "shaders/interop/voxelize.h"
 
 namespace cairn::voxelizer {
@@ -93,8 +94,7 @@ BitmaskPyramid PyramidBuilder::build(const gl::Buffer& bits, const glm::ivec3& s
     }
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     glFinish();
-    last_milliseconds_ =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    last_milliseconds_ = milliseconds_since(start);
     std::vector<BitGrid> levels;
     levels.push_back(read_bits(bits, size));
     for (const Level& level : levels_)

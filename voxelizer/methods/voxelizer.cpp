@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "gl/limits.h"
 #include "shaders/interop/grid.h"
@@ -127,8 +128,7 @@ void Voxelizer::mark_timed(const GpuSurface& surface, const Region& region,
     const auto start = std::chrono::steady_clock::now();
     mark(surface, region, parts_, bits_);
     glFinish();
-    last_milliseconds_ =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    last_milliseconds_ = milliseconds_since(start);
 }
 
 BitGrid Voxelizer::voxelize(const GpuSurface& surface, const Region& region,

@@ -17,7 +17,6 @@ namespace {
 
 using optics::Image;
 using renderer::BatchPace;
-using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::View;
 

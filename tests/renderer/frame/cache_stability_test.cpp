@@ -23,7 +23,6 @@ namespace {
 using optics::Image;
 using renderer::BrickCache;
 using renderer::BrickPool;
-using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::Tile;
 using renderer::View;

@@ -16,7 +16,6 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Clock;
 using renderer::FrameLoop;
 using renderer::FrameStatistics;
 using renderer::Rows;

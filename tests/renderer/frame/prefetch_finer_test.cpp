@@ -15,7 +15,6 @@ namespace cairn::test {
 namespace {
 
 using optics::Image;
-using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::View;
 

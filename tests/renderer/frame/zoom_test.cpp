@@ -18,7 +18,6 @@ namespace {
 
 using optics::Image;
 using renderer::FractalContent;
-using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::Tile;
 using renderer::View;

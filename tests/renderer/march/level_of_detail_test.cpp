@@ -19,7 +19,6 @@ namespace {
 
 using optics::Image;
 using renderer::LevelOfDetail;
-using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::View;
 

@@ -29,7 +29,6 @@ namespace cairn::test {
 namespace {
 
 using optics::Image;
-using renderer::Milliseconds;
 using renderer::QueryKind;
 using renderer::Renderer;
 using renderer::TileQueries;

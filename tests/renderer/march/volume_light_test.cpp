@@ -19,7 +19,6 @@ namespace cairn::test {
 namespace {
 
 using optics::Image;
-using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::TransferFunction;
 using renderer::View;

@@ -19,7 +19,6 @@ namespace {
 using optics::Image;
 using renderer::DenseField;
 using renderer::HollowSphere;
-using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::TransferFunction;
 using renderer::View;

@@ -18,7 +18,6 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Milliseconds;
 using renderer::Mix;
 
 class MeshMix : public GlTest {};

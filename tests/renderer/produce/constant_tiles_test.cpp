@@ -17,7 +17,6 @@ namespace cairn::test {
 namespace {
 
 using optics::Image;
-using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::TreeShape;
 using renderer::View;

@@ -18,7 +18,6 @@
 namespace cairn::test {
 namespace {
 
-using renderer::Clock;
 using renderer::QueryKind;
 using renderer::Round;
 using renderer::Tile;

@@ -23,7 +23,6 @@ using optics::Image;
 using optics::Light;
 using optics::LightShape;
 using optics::LightShares;
-using renderer::Milliseconds;
 using renderer::Renderer;
 using renderer::View;
 
