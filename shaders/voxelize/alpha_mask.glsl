@@ -1,5 +1,5 @@
 // Whether the part of a masked triangle inside a closed voxel touches a closed texel square that passes the
-// cutoff: exact on every driver. The definition in few lines is voxelizer/exact_mask.h.
+// cutoff: exact on every driver. The definition in few lines is voxelizer/surface/exact_mask.h.
 //
 //     int mask_decide(MaskedTriangle m, ivec3 voxel, int shift)     MASK_SURFACE, MASK_EMPTY, or MASK_UNDECIDED: of what
 //                                                                   is left to voxelizer/surface/exact_mask.h

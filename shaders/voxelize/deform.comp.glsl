@@ -134,7 +134,7 @@ uint snorm_16(double value) {
     return uint(scaled < 0.0LF ? -nearest : nearest) & 0xFFFFu;
 }
 
-// Octahedral, as packed_normal in voxelizer/surface.cpp.
+// Octahedral, as packed_normal in voxelizer/surface/surface.cpp.
 uint packed_normal(dvec3 normal) {
     const double sum = abs(normal.x) + abs(normal.y) + abs(normal.z);
     if (!(sum > 0.0LF) || isinf(sum)) return 0u;

@@ -1,5 +1,5 @@
 // Unit vectors in 32 bits, by the octahedral map (Cigolle et al. 2014); 0 = none. Packed likewise in
-// voxelizer/surface.cpp.
+// voxelizer/surface/surface.cpp.
 vec3 decode_normal(uint packed_normal) {
     const vec2 e = unpackSnorm2x16(packed_normal);
     const float z = 1.0 - abs(e.x) - abs(e.y);
