@@ -1,7 +1,7 @@
 // Small sets of triangles at any level and in any region, the GPU against clipping (clipped_triangle.h). A
 // longer trial:
 //
-//     CAIRN_FUZZ_TRIALS=100000 CAIRN_FUZZ_SEED=7 voxelizer_fuzz_test
+//     CAIRN_FUZZ_TRIALS=100000 CAIRN_FUZZ_SEED=7 voxelizer_test --gtest_filter=VoxelizerFuzz.*
 #include "tests/support/fuzz.h"
 
 #include <gtest/gtest.h>
