@@ -141,7 +141,8 @@ void expect_ours_beside_embree_at_the_same_error(const Chart& chart) {
     EXPECT_TRUE(has_note(chart, "RMSE 0.03 at most"));
 }
 
-// One test, for the chart takes seconds; its slow lines are cut short.
+// One test, for the chart takes seconds. Lines that take longer than several budgets are cut short, so the
+// budget leaves room for a loaded machine: a line that is cut ends at voxels too coarse for the bounds below.
 TEST_F(ShadowChart, ComparesEveryMethodWithEmbree) {
     const test::ScratchFolder folder;
     ChartOptions options;
@@ -149,7 +150,7 @@ TEST_F(ShadowChart, ComparesEveryMethodWithEmbree) {
     options.scenes = {"builtin:spheres"};
     options.resolutions = {64};
     options.runs = 1;
-    options.budget_ms = 200.0;
+    options.budget_ms = 1000.0;
     options.truth_cache = folder.path() / "truth";
     const Chart chart = chart_shadow(options);
     expect_every_method_where_it_applies(chart);
