@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus,
                          testing::Values(Target{"gltf", gltf, 20}, Target{"volume", volume, 12},
                                          Target{"uri", uri, 12}, Target{"options", options, 12},
                                          Target{"transfer", transfer, 8}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& target) { return target.param.name; });
 
 // A fuzzer is worth no more than its promises: one that is broken must end the program.
 TEST(CorpusDeathTest, BrokenPromisesEndTheProgram) {

@@ -79,7 +79,7 @@ private:
     }
     void read_raw() {
         const std::size_t open = source_.find('(', at_);
-        const std::string end = ")" + std::string(source_.substr(at_ + 2, open - at_ - 2)) + "\"";
+        const std::string end = fmt::format("){}\"", source_.substr(at_ + 2, open - at_ - 2));
         at_ = open + 1;
         const std::size_t from = at_;
         skip_past(end);
