@@ -211,21 +211,21 @@ TEST(AppRender, TreesHaveTheShapeThatIsAskedFor) {
     const ScratchFolder folder;
     // Both have 16 voxels across the scene, all of which are as wide as several pixels, so that neither tree
     // shows coarser ones anywhere.
-    const auto render = [&](const std::vector<std::string>& options) {
+    const auto render = [&](const char* resolution, const std::vector<std::string>& options) {
         std::vector<std::string> run = {"render", "builtin:cornell",   "--size",
-                                        "96x64",  "--max-resolution",  "16",
+                                        "96x64",  "--max-resolution",  resolution,
                                         "-o",     folder.file("p.png")};
         run.insert(run.end(), options.begin(), options.end());
         const auto figures = cairn_json(run);
         return std::pair(figures, read_text(folder.file("p.png")));
     };
-    const auto [usual, expected] = render({});
-    const auto [binary, picture] = render({"--tree-n", "2", "--brick-m", "8"});
+    const auto [usual, expected] = render("16", {});
+    const auto [binary, picture] = render("16", {"--tree-n", "2", "--brick-m", "8"});
     EXPECT_EQ(binary["tree_n"], 2);
     EXPECT_EQ(binary["brick_m"], 8);
     EXPECT_GT(binary["bricks_produced"], usual["bricks_produced"]);
     EXPECT_TRUE(picture == expected);
-    const auto [thirds, other] = render({"--tree-n", "3"});
+    const auto [thirds, other] = render("27", {"--tree-n", "3"});
     EXPECT_EQ(thirds["brick_m"], 27);
 }
 
