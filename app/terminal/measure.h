@@ -1,10 +1,11 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <utility>
 
 #include <sys/resource.h>
+
+#include "base/clock.h"
 
 namespace cairn::app {
 
@@ -13,11 +14,10 @@ class Stopwatch {
 public:
     [[nodiscard]] double lap_ms() {
         const Clock::time_point now = Clock::now();
-        return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+        return milliseconds(now - std::exchange(start_, now));
     }
 
 private:
-    using Clock = std::chrono::steady_clock;
     Clock::time_point start_ = Clock::now();
 };
 
