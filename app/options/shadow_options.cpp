@@ -13,7 +13,6 @@
 namespace cairn::app {
 namespace {
 
-constexpr int max_map_size = 2048;
 constexpr int max_truth_samples = 65536;
 
 double positive(const char* option, double value) {
@@ -125,7 +124,7 @@ OptionTable<ShadowOptions> map_table() {
         map_row({"--map-size", "N",
                  "texels a side of a soft shadow map; its occluder map has\nhalf (default: {default})",
                  [](ShadowOptions& options, const char* option, const std::string& text) {
-                     options.map.receiver_size = parse_int(option, text, 2, max_map_size);
+                     options.map.receiver_size = parse_int(option, text, 2, renderer::max_shadow_map_size);
                      options.map.occluder_size = options.map.receiver_size / 2;
                  },
                  [](const ShadowOptions& options) { return std::to_string(options.map.receiver_size); }}),

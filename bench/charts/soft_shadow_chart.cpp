@@ -123,7 +123,7 @@ private:
             const Case& now = cases.emplace_back(placed({width, 0.0, occluder_.own_gap()}));
             add_ways(width, now, plan_.base, contenders);
             for (const int size : {plan_.base / 2, plan_.base * 2})
-                if (size > 0 && size <= 2048)
+                if (size > 0 && size <= renderer::max_shadow_map_size)
                     contenders.push_back({.parameter = width, .placed = &now, .occluder_size = size});
         }
         measure("light-size", contenders);

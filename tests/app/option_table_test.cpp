@@ -126,7 +126,7 @@ std::string RandomTexts::of(const std::string& option) {
         {"--light-disk", [&] { return number(0.001, 9.0); }},
         {"--light-target", [&] { return numbers(3, -9.0, 9.0); }},
         {"--rays", [&] { return whole(1, MAX_SHADOW_RAYS); }},
-        {"--map-size", [&] { return whole(2, 2048); }},
+        {"--map-size", [&] { return whole(2, renderer::max_shadow_map_size); }},
         {"--passes",
          [&] {
              return any_of({"one", "two"});
