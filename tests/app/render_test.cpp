@@ -181,14 +181,25 @@ TEST(AppRender, ResolutionIsBounded) {
     EXPECT_LT(bricks("32"), bricks("2048"));
 }
 
+/// What a run of `cairn render` left behind.
+struct Rendered {
+    Json figures;
+    std::string png;  ///< the bytes of the file
+};
+
+/// Renders at 96 x 64 pixels with more options.
+Rendered rendered(const ScratchFolder& folder, const std::string& scene,
+                  const std::vector<std::string>& options) {
+    std::vector<std::string> run = {"render", scene, "--size", "96x64", "-o", folder.file("p.png")};
+    run.insert(run.end(), options.begin(), options.end());
+    const Json figures = cairn_json(run);
+    return {figures, read_text(folder.file("p.png"))};
+}
+
 TEST(AppRender, TraversalsAndTileQueriesMakeTheSamePictureInAnotherWay) {
     const ScratchFolder folder;
     const auto render = [&](const std::vector<std::string>& options) {
-        std::vector<std::string> run = {"render", "builtin:knot", "--size",
-                                        "96x64",  "-o",           folder.file("p.png")};
-        run.insert(run.end(), options.begin(), options.end());
-        const auto figures = cairn_json(run);
-        return std::pair(figures, read_text(folder.file("p.png")));
+        return rendered(folder, "builtin:knot", options);
     };
     const auto [usual, expected] = render({});
     EXPECT_EQ(usual["tree_n"], 4);
@@ -211,13 +222,9 @@ TEST(AppRender, TreesHaveTheShapeThatIsAskedFor) {
     const ScratchFolder folder;
     // Both have 16 voxels across the scene, all of which are as wide as several pixels, so that neither tree
     // shows coarser ones anywhere.
-    const auto render = [&](const char* resolution, const std::vector<std::string>& options) {
-        std::vector<std::string> run = {"render", "builtin:cornell",   "--size",
-                                        "96x64",  "--max-resolution",  resolution,
-                                        "-o",     folder.file("p.png")};
-        run.insert(run.end(), options.begin(), options.end());
-        const auto figures = cairn_json(run);
-        return std::pair(figures, read_text(folder.file("p.png")));
+    const auto render = [&](const char* resolution, std::vector<std::string> options) {
+        options.insert(options.end(), {"--max-resolution", resolution});
+        return rendered(folder, "builtin:cornell", options);
     };
     const auto [usual, expected] = render("16", {});
     const auto [binary, picture] = render("16", {"--tree-n", "2", "--brick-m", "8"});
@@ -232,11 +239,7 @@ TEST(AppRender, TreesHaveTheShapeThatIsAskedFor) {
 TEST(AppRender, AFrameWithinABudgetShowsWhatThereIs) {
     const ScratchFolder folder;
     const auto render = [&](const std::vector<std::string>& options) {
-        std::vector<std::string> run = {"render", "builtin:knot", "--size",
-                                        "96x64",  "-o",           folder.file("p.png")};
-        run.insert(run.end(), options.begin(), options.end());
-        const auto figures = cairn_json(run);
-        return std::pair(figures, read_text(folder.file("p.png")));
+        return rendered(folder, "builtin:knot", options);
     };
     const auto [whole, expected] = render({});
     EXPECT_FALSE(whole.contains("frame_budget_ms"));
