@@ -146,6 +146,7 @@ Chart chart_exploration(const ChartOptions& options) {
         scenes = {"builtin:hollow-sphere", "builtin:sponge", "builtin:tree"};
         add_real_scenes(chart, options, {"stanford_bunny_69k.glb"}, scenes);
     }
+    check_volume_options(chart, options, scenes);
     const std::vector<int> sizes =
         options.resolutions.empty() ? std::vector<int>{own_size} : options.resolutions;
     double done = 0.0;

@@ -55,6 +55,7 @@ Chart chart_production(const ChartOptions& options) {
         add_real_scenes(chart, options, {engine_path, "stanford_bunny_69k.glb", "stanford_dragon_871k.glb"},
                         scenes);
     }
+    check_volume_options(chart, options, scenes);
     const std::vector<int> sizes =
         options.resolutions.empty() ? std::vector<int>{own_size} : options.resolutions;
     double done = 0.0;

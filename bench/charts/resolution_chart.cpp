@@ -65,6 +65,7 @@ Chart chart_resolution(const ChartOptions& options) {
                            "node_pool_bytes", "driver",      "threads"};
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) scenes = {"builtin:hollow-sphere", "builtin:spheres-repeated", "builtin:knot"};
+    check_volume_options(chart, options, scenes);
     const std::vector<int> resolutions =
         options.resolutions.empty() ? std::vector<int>{512, 2048, 8192, 32768} : options.resolutions;
     double done = 0.0;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <variant>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "bench/trials/real_scenes.h"
@@ -24,6 +27,17 @@ constexpr std::int64_t copy_resolution = 256;
 constexpr double optical_depth = 1.0;
 /// What does not show of a scan, as a share of its densities.
 constexpr double scan_empty = 0.3;
+
+constexpr std::string_view one_shell = "builtin:hollow-sphere";
+constexpr std::string_view repeated_shells = "builtin:spheres-repeated";
+
+bool is_shells(std::string_view path) {
+    return path == one_shell || path == repeated_shells;
+}
+
+bool is_volume(const std::string& path) {
+    return is_shells(path) || scenes::is_volume_file(path);
+}
 
 /// @param empty  density that does not show; 0 where voxels that are coarse and thin are to show as such.
 renderer::TransferFunction opaque(double empty, double voxel_size) {
@@ -74,8 +88,8 @@ struct FrameCase::Data {
 };
 
 FrameCase::FrameCase(const std::string& path) : data_(std::make_unique<Data>()), name_(scene_name(path)) {
-    if (path == "builtin:hollow-sphere" || path == "builtin:spheres-repeated") {
-        data_->shown = Data::Shells{path == "builtin:spheres-repeated"};
+    if (is_shells(path)) {
+        data_->shown = Data::Shells{path == repeated_shells};
         bounds_ = {glm::dvec3(-0.5), glm::dvec3(0.5)};
     } else if (path == "builtin:sponge") {
         data_->shown = Data::Sponge{};
@@ -147,6 +161,21 @@ std::unique_ptr<renderer::Content> FrameCase::content(const renderer::TreeOption
     if (data_->is_sponge()) return renderer::fractal_content(fitted(tree), shaders);
     Shown shown = shown_field(tree);
     return renderer::volume_content(std::move(shown.field), shown.transfer, tree, volume);
+}
+
+void check_volume_options(Chart& chart, const ChartOptions& options, const std::vector<std::string>& scenes) {
+    const VoxelOptions& voxels = options.voxels;
+    if (!voxels.steps_per_voxel && !voxels.gradient_threshold) return;
+    const char* const option = voxels.steps_per_voxel ? "--steps-per-voxel" : "--gradient-threshold";
+    std::vector<std::string> notes;
+    for (const std::string& scene : scenes) {
+        if (!is_volume(scene))
+            notes.push_back(fmt::format("{} changes nothing of {}, which is no volume", option, scene));
+    }
+    if (notes.size() == scenes.size())
+        throw Error(Fault::usage, option, "none of the chart's scenes is a volume",
+                    "leave it out, or give a volume with --scene");
+    chart.notes.insert(chart.notes.end(), notes.begin(), notes.end());
 }
 
 renderer::View FrameCase::view(int width, int height) const {

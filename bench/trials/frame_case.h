@@ -2,8 +2,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bench/plots/table.h"
+#include "bench/trials/chart.h"
 #include "renderer/open_content.h"
 #include "renderer/renderer.h"
 
@@ -52,5 +54,11 @@ private:
     std::string name_;
     scenes::Bounds bounds_;
 };
+
+/// Sees to it that no option of volumes is ignored without a word. If `options.voxels` has one, each of the
+/// scenes that is no volume gets a note.
+/// @param scenes  paths, as FrameCase takes them.
+/// @throws Error (Fault::usage) if `options.voxels` has one, and none of the scenes is a volume.
+void check_volume_options(Chart& chart, const ChartOptions& options, const std::vector<std::string>& scenes);
 
 }  // namespace cairn::bench
