@@ -15,7 +15,7 @@
 namespace cairn::app {
 namespace {
 
-/// A voxel is then 2^8 lattice units wide, which still tells where in it a vertex is.
+/// A voxel is then 2^8 lattice units wide, which leaves 8 bits for a vertex within its voxel.
 constexpr int max_grid_resolution = 65536;
 constexpr int max_scene_index = 1 << 20;
 constexpr const char* common_group = "Common options";

@@ -9,9 +9,10 @@
 
 namespace cairn::app {
 
-/// Time on the wall since it was made, or since the last `lap_ms()`.
+/// Measures wall-clock time.
 class Stopwatch {
 public:
+    /// Milliseconds since the construction, or since the last call.
     [[nodiscard]] double lap_ms() {
         const Clock::time_point now = Clock::now();
         return milliseconds(now - std::exchange(start_, now));
@@ -21,7 +22,7 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
-/// The most memory that this process has held at once.
+/// The most memory that this process has held at once, in bytes.
 [[nodiscard]] inline std::uint64_t peak_rss_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
