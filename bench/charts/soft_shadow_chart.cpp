@@ -58,7 +58,7 @@ struct Plan {
 /// A placement with its truth.
 struct Case {
     Case(const ShadowOccluder& occluder, const ShadowPlacement& placement) : setting(occluder, placement) {}
-    StudySetting setting;
+    StudyCase setting;
     ShadowPoints points;
     std::vector<double> truth;
 };
@@ -98,7 +98,7 @@ public:
           chart_(chart),
           tracer_(occluder.scene(), occluder.snapshot()),
           mesh_(occluder.scene(), occluder.snapshot()),
-          base_(placed({base_light, 0.0, occluder.own_gap()})) {}
+          base_(placed({base_light, 0.0, occluder.default_gap()})) {}
 
     using Step = void (OccluderStudies::*)();
     static constexpr std::array<Step, 6> steps() {
@@ -120,7 +120,7 @@ private:
         std::deque<Case> cases;
         std::vector<Contender> contenders;
         for (const double width : light_widths) {
-            const Case& now = cases.emplace_back(placed({width, 0.0, occluder_.own_gap()}));
+            const Case& now = cases.emplace_back(placed({width, 0.0, occluder_.default_gap()}));
             add_ways(width, now, plan_.base, contenders);
             for (const int size : {plan_.base / 2, plan_.base * 2})
                 if (size > 0 && size <= renderer::max_shadow_map_size)
@@ -133,7 +133,7 @@ private:
         std::deque<Case> cases;
         std::vector<Contender> contenders;
         for (const double lateral : laterals)
-            add_ways(lateral, cases.emplace_back(placed({base_light, lateral, occluder_.own_gap()})),
+            add_ways(lateral, cases.emplace_back(placed({base_light, lateral, occluder_.default_gap()})),
                      plan_.base, contenders);
         measure("lateral", contenders);
     }
@@ -226,7 +226,7 @@ private:
                     spent += ms;
                 if (run > 0 && spent > contender_ms) continue;
                 SoftShadowMap& map = map_of(contender.occluder_size, contender.passes, contender.format);
-                const StudySetting& setting = contender.placed->setting;
+                const StudyCase& setting = contender.placed->setting;
                 map.compute(setting.light(), setting.frustum(contender.window),
                             contender.mesh != nullptr ? *contender.mesh : mesh_, setting.floor());
                 contender.samples_ms.push_back(map.statistics().milliseconds);

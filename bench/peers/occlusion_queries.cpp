@@ -161,7 +161,7 @@ Visibility VisibleBricks::by_queries(const QuerySchedule& schedule) {
     };
     std::vector<ViewTile> to_load;
     if (schedule.overlapped) {
-        const Tiles untested = take(schedule.tests * schedule.loads_a_test);
+        const Tiles untested = take(schedule.tests * schedule.loads_per_test);
         to_load.assign(untested.begin(), untested.end());
     }
     Tiles under_test = take(schedule.tests);
@@ -176,7 +176,7 @@ Visibility VisibleBricks::by_queries(const QuerySchedule& schedule) {
             to_load.clear();
         }
         const double visible = double(to_load.size());
-        under_test = take(std::max(visible / schedule.loads_a_test, double(schedule.tests)));
+        under_test = take(std::max(visible / schedule.loads_per_test, double(schedule.tests)));
         test(under_test);
     }
     show();

@@ -46,9 +46,9 @@ renderer::TransferFunction opaque(double empty, double voxel_size) {
 }
 
 /// A field elsewhere.
-class Moved final : public renderer::Field {
+class MovedField final : public renderer::Field {
 public:
-    Moved(std::shared_ptr<const renderer::Field> field, const glm::dvec3& origin)
+    MovedField(std::shared_ptr<const renderer::Field> field, const glm::dvec3& origin)
         : field_(std::move(field)), frame_(field_->frame()) {
         frame_.origin = origin;
     }
@@ -122,7 +122,7 @@ renderer::TreeOptions FrameCase::fitted(const renderer::TreeOptions& tree) const
     return usual;
 }
 
-FrameCase::Shown FrameCase::shown_field(const renderer::TreeOptions& tree) const {
+FrameCase::ShownField FrameCase::shown_field(const renderer::TreeOptions& tree) const {
     if (const scenes::Volume* const volume = data_->volume()) {
         const glm::dvec3& spacing = volume->spacing;
         const double voxel_size = std::min({spacing.x, spacing.y, spacing.z});
@@ -136,7 +136,7 @@ FrameCase::Shown FrameCase::shown_field(const renderer::TreeOptions& tree) const
         std::make_shared<renderer::HollowSphere>(tree.n, resolution / copies, shell_inner, shell_outer, side);
     if (copies > 1) {
         const auto repeated = std::make_shared<renderer::RepeatedField>(std::move(field), copies);
-        field = std::make_shared<Moved>(repeated, bounds_.low);
+        field = std::make_shared<MovedField>(repeated, bounds_.low);
     }
     return {std::move(field), opaque(0.0, 1.0 / double(resolution))};
 }
@@ -149,7 +149,7 @@ renderer::Renderer FrameCase::make(const renderer::TreeOptions& tree, const gl::
 
 renderer::TreeShape FrameCase::shape(const renderer::TreeOptions& tree) const {
     if (data_->volume() == nullptr) return renderer::tree_shape_of(fitted(tree));
-    const Shown shown = shown_field(tree);
+    const ShownField shown = shown_field(tree);
     return renderer::make_volume_shape(shown.field->frame(), tree.n, tree.m, tree.max_resolution).tree;
 }
 
@@ -159,7 +159,7 @@ std::unique_ptr<renderer::Content> FrameCase::content(const renderer::TreeOption
     if (const Data::AtRest* const rest = data_->scene())
         return renderer::surface_content(rest->scene, rest->snapshot, tree, shaders);
     if (data_->is_sponge()) return renderer::fractal_content(fitted(tree), shaders);
-    Shown shown = shown_field(tree);
+    ShownField shown = shown_field(tree);
     return renderer::volume_content(std::move(shown.field), shown.transfer, tree, volume);
 }
 

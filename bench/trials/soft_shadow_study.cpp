@@ -119,7 +119,7 @@ ShadowOccluder ShadowOccluder::cut(int parts) const {
 }
 
 /// The occluder stays, and the light and the floor are placed around it.
-StudySetting::StudySetting(const ShadowOccluder& occluder, const ShadowPlacement& placement)
+StudyCase::StudyCase(const ShadowOccluder& occluder, const ShadowPlacement& placement)
     : placement_(placement),
       light_(light_over(placement)),
       floor_(std::make_unique<scenes::Scene>(scene_of({level_square(floor_half, floor_height())}))),
@@ -127,7 +127,7 @@ StudySetting::StudySetting(const ShadowOccluder& occluder, const ShadowPlacement
       floor_mesh_(std::make_unique<renderer::ShadowMesh>(*floor_, floor_snapshot_)),
       fitted_(renderer::fit_shadow_frustum(light_, occluder.snapshot(), floor_snapshot_)) {}
 
-renderer::ShadowFrustum StudySetting::frustum(StudyWindow window) const {
+renderer::ShadowFrustum StudyCase::frustum(StudyWindow window) const {
     renderer::ShadowFrustum frustum = fitted_;
     if (window == StudyWindow::shared) {
         frustum.occluders.low = glm::min(fitted_.occluders.low, fitted_.receivers.low);

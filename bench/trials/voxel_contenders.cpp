@@ -90,11 +90,11 @@ VoxelContender openvdb(const VoxelCase& voxel_case) {
 }  // namespace
 
 struct VoxelContenders::Impl {
-    struct Named {
+    struct NamedMethod {
         voxelizer::Method method;
         std::unique_ptr<voxelizer::Voxelizer> voxelizer;
     };
-    std::vector<Named> methods;  ///< conservative first
+    std::vector<NamedMethod> methods;  ///< conservative first
 };
 
 VoxelContenders::VoxelContenders(const gl::ShaderSource& shaders) : impl_(new Impl{{}}) {
@@ -107,7 +107,7 @@ std::vector<VoxelContender> VoxelContenders::at(const VoxelCase& voxel_case) con
     std::vector<VoxelContender> all;
     // The raster methods cut large grids themselves, in tiles of slices.
     const bool is_large = voxelizer::bit_bytes(voxel_case.region.size) > voxelizer::TileOptions{}.whole_bytes;
-    for (const Impl::Named& named : impl_->methods) {
+    for (const Impl::NamedMethod& named : impl_->methods) {
         const bool regions = is_large && named.method == voxelizer::Method::conservative;
         all.push_back((regions ? by_regions : of_method)(*named.voxelizer, named.method, voxel_case));
     }

@@ -21,7 +21,7 @@ using bench::ShadowPoints;
 using bench::soft_shadow_errors;
 using bench::SoftShadowErrors;
 using bench::study_light_height;
-using bench::StudySetting;
+using bench::StudyCase;
 using bench::StudyWindow;
 using renderer::ShadowFormat;
 using renderer::ShadowPasses;
@@ -61,13 +61,13 @@ public:
     }
     [[nodiscard]] double two(int size) const { return errors(map_of(size, ShadowPasses::two)).mean; }
 
-    [[nodiscard]] const StudySetting& setting() const { return setting_; }
+    [[nodiscard]] const StudyCase& setting() const { return setting_; }
     [[nodiscard]] const ShadowPoints& points() const { return points_; }
     [[nodiscard]] const std::vector<double>& truth() const { return truth_; }
 
 private:
     const ShadowOccluder& occluder_;
-    StudySetting setting_;
+    StudyCase setting_;
     renderer::ShadowMesh mesh_;
     ShadowPoints points_;
     std::vector<double> truth_;
@@ -80,7 +80,7 @@ protected:
 };
 
 /// What is seen of the light past the unit square, in closed form.
-double seen_past_square(const StudySetting& setting, const glm::dvec3& point) {
+double seen_past_square(const StudyCase& setting, const glm::dvec3& point) {
     const glm::dvec3 light = setting.light().position;
     const double x = -light.x;
     const std::vector<glm::dvec2> polygon = {

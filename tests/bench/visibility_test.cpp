@@ -60,9 +60,9 @@ void expect_nothing_missed(const FrameCase& frame_case, renderer::View view,
     EXPECT_EQ(by_frustum.image.rgba, image.rgba);
     EXPECT_EQ(by_frustum.bricks_produced, by_frustum.tiles_in_frustum);
     for (const QuerySchedule schedule :
-         {QuerySchedule{.tests = 16}, QuerySchedule{.tests = 32, .loads_a_test = 0.25},
+         {QuerySchedule{.tests = 16}, QuerySchedule{.tests = 32, .loads_per_test = 0.25},
           QuerySchedule{.tests = 16, .overlapped = false}}) {
-        SCOPED_TRACE(fmt::format("{} tests, {} loads a test, {}", schedule.tests, schedule.loads_a_test,
+        SCOPED_TRACE(fmt::format("{} tests, {} loads per test, {}", schedule.tests, schedule.loads_per_test,
                                  schedule.overlapped ? "overlapped" : "waiting"));
         const Visibility by_queries = make(view)->by_queries(schedule);
         EXPECT_EQ(by_queries.missed, 0U);
