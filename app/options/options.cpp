@@ -174,7 +174,7 @@ void check_grid_options(const GridOptions& options) {
     }
     if (!options.resolution && !options.voxel_size) {
         throw Error(Fault::usage, "", "--resolution or --voxel-size is required",
-                    "-r 256 makes a cube of 256 voxels a side");
+                    "-r 256 makes a cube of 256 voxels per side");
     }
 }
 

@@ -158,9 +158,9 @@ ExitCode run(const Options& options) {
     renderer::Frame first;
     {
         Progress progress("rendering", quiet);
-        renderer::Request told = request;
-        told.progress = [&progress](double share) { progress.set(share); };
-        first = renderer.render(view, told);
+        renderer::Request watched = request;
+        watched.progress = [&progress](double share) { progress.set(share); };
+        first = renderer.render(view, watched);
     }
     report.add("first_frame_ms", first.statistics.milliseconds);
     (void)watch.lap_ms();

@@ -23,9 +23,9 @@ namespace {
 constexpr double shell_inner = 0.25;
 constexpr double shell_outer = 0.30;
 constexpr std::int64_t copy_resolution = 256;
-/// Of the densest, through a finest voxel: so solids are opaque after a few, however fine they are.
+/// Optical depth of density 1 per finest voxel: solids are opaque after a few voxels, however fine these are.
 constexpr double optical_depth = 1.0;
-/// What does not show of a scan, as a share of its densities.
+/// Densities of a scan below this share do not show.
 constexpr double scan_empty = 0.3;
 
 constexpr std::string_view one_shell = "builtin:hollow-sphere";
@@ -39,13 +39,14 @@ bool is_volume(const std::string& path) {
     return is_shells(path) || scenes::is_volume_file(path);
 }
 
-/// @param empty  density that does not show; 0 where voxels that are coarse and thin are to show as such.
+/// A transfer function for solids.
+/// @param empty  greatest density that does not show; 0 if coarse, thin voxels are to show.
 renderer::TransferFunction opaque(double empty, double voxel_size) {
     return renderer::TransferFunction(
         {{empty, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), optical_depth / voxel_size}});
 }
 
-/// A field elsewhere.
+/// A field at another place.
 class MovedField final : public renderer::Field {
 public:
     MovedField(std::shared_ptr<const renderer::Field> field, const glm::dvec3& origin)

@@ -39,16 +39,16 @@ class Placed {
 public:
     Placed(const ShadowOccluder& occluder, const ShadowPlacement& placement)
         : occluder_(occluder),
-          setting_(occluder, placement),
+          study_(occluder, placement),
           mesh_(occluder.scene(), occluder.snapshot()),
           points_(shadow_points(map(map_of(64, ShadowPasses::one)))),
           truth_(bench::truth_at(points_, reference::ImageTracer(occluder.scene(), occluder.snapshot()),
-                                 setting_.light())) {}
+                                 study_.light())) {}
 
     [[nodiscard]] SoftShadowMap map(const SoftShadowOptions& options,
                                     StudyWindow window = StudyWindow::fitted) const {
         SoftShadowMap map(options);
-        map.compute(setting_.light(), setting_.frustum(window), mesh_, setting_.floor());
+        map.compute(study_.light(), study_.frustum(window), mesh_, study_.floor());
         return map;
     }
     [[nodiscard]] SoftShadowErrors errors(const SoftShadowOptions& options,
@@ -61,13 +61,13 @@ public:
     }
     [[nodiscard]] double two(int size) const { return errors(map_of(size, ShadowPasses::two)).mean; }
 
-    [[nodiscard]] const StudyCase& setting() const { return setting_; }
+    [[nodiscard]] const StudyCase& study() const { return study_; }
     [[nodiscard]] const ShadowPoints& points() const { return points_; }
     [[nodiscard]] const std::vector<double>& truth() const { return truth_; }
 
 private:
     const ShadowOccluder& occluder_;
-    StudyCase setting_;
+    StudyCase study_;
     renderer::ShadowMesh mesh_;
     ShadowPoints points_;
     std::vector<double> truth_;
@@ -80,13 +80,13 @@ protected:
 };
 
 /// What is seen of the light past the unit square, in closed form.
-double seen_past_square(const StudyCase& setting, const glm::dvec3& point) {
-    const glm::dvec3 light = setting.light().position;
+double seen_past_square(const StudyCase& study, const glm::dvec3& point) {
+    const glm::dvec3 light = study.light().position;
     const double x = -light.x;
     const std::vector<glm::dvec2> polygon = {
         {x - 0.5, -0.5}, {x + 0.5, -0.5}, {x + 0.5, 0.5}, {x - 0.5, 0.5}};
     return visible_past(polygon, light.y, {point.x - light.x, point.z, light.y - point.y},
-                        optics::half_size(setting.light()));
+                        optics::half_size(study.light()));
 }
 
 // What all the figures stand on: the points lie on the floor, where the texels of the map say what they see;
@@ -99,8 +99,8 @@ TEST_F(SoftShadowFindings, StandOnTheRightPointsAndTheRightTruth) {
     for (std::size_t i = 0; i < placed.points().world.size(); ++i) {
         const glm::dvec3 point = placed.points().world[i];
         const glm::ivec2 texel = placed.points().texels[i];
-        ASSERT_NEAR(point.y, placed.setting().floor_height(), 1e-5) << "point " << i;
-        const double exact = seen_past_square(placed.setting(), point);
+        ASSERT_NEAR(point.y, placed.study().floor_height(), 1e-5) << "point " << i;
+        const double exact = seen_past_square(placed.study(), point);
         ASSERT_NEAR(visible.at(texel.x, texel.y), exact, 1e-4) << "texel " << texel.x << ", " << texel.y;
         ASSERT_NEAR(placed.truth()[i], exact, 0.02) << "texel " << texel.x << ", " << texel.y;
         shadowed += exact < 1.0 ? 1 : 0;
@@ -115,8 +115,8 @@ TEST_F(SoftShadowFindings, CuttingTheTrianglesKeepsTheShadow) {
     EXPECT_EQ(finer.snapshot().triangle_count, 4 * knot_.snapshot().triangle_count);
     const renderer::ShadowMesh mesh(finer.scene(), finer.snapshot());
     SoftShadowMap map(map_of(96, ShadowPasses::two));
-    map.compute(whole.setting().light(), whole.setting().frustum(StudyWindow::fitted), mesh,
-                whole.setting().floor());
+    map.compute(whole.study().light(), whole.study().frustum(StudyWindow::fitted), mesh,
+                whole.study().floor());
     const double cut = soft_shadow_errors(map.visible(), whole.points(), whole.truth()).mean;
     EXPECT_NEAR(cut, whole.two(96), 2e-4);
 }
@@ -185,7 +185,7 @@ TEST_F(SoftShadowFindings, ErrorGrowsWithTheLight) {
 // 4.2.4: a point light's error is "quite large", "an error of 1, over the entire shadow boundary", but "it
 // occurs only at the shadow boundary": within half a texel of the occluder map.
 TEST_F(SoftShadowFindings, APointLightIsWrongAtTheShadowsEdgeAlone) {
-    const int size = 44;  // no multiple of the points a side: they would all lie in the middle of patches
+    const int size = 44;  // no multiple of the points per side: they would all lie in the middle of patches
     const Placed point(knot_, {.light_width = 0.01});
     const Placed small(knot_, {.light_width = 0.2});
     const SoftShadowErrors errors = point.errors(map_of(size, ShadowPasses::two));
@@ -212,7 +212,7 @@ TEST_F(SoftShadowFindings, APointLightIsWrongAtTheShadowsEdgeAlone) {
                 1.5 * study_light_height * texel * glm::dvec2(std::cos(angle), std::sin(angle));
             around.world.push_back(point.points().world[i] + glm::dvec3(aside.x, 0.0, aside.y));
         }
-        const std::vector<double> there = bench::truth_at(around, tracer, point.setting().light());
+        const std::vector<double> there = bench::truth_at(around, tracer, point.study().light());
         const auto [least, most] = std::minmax_element(there.begin(), there.end());
         EXPECT_GT(*most - *least, 0.9) << "texel " << at.x << ", " << at.y << " is wrong inside the shadow";
     }
