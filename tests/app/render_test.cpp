@@ -126,7 +126,7 @@ TEST(AppRender, LooksStraightDown) {
     EXPECT_GT(picture_of(folder, "builtin:knot", {"--camera", "0,-6,0,0,0,0"}).color_count(), 10U);
 }
 
-/// A square in the plane z = 0, and a light of the scene's own.
+/// Writes a square in the plane z = 0, with a light of its own.
 void write_lit_square(const std::string& path, const Json& light, const Json& node_of_light) {
     GltfFile file;
     const int positions = file.add_accessor<float>({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, "VEC3");
@@ -145,7 +145,7 @@ void write_lit_square(const std::string& path, const Json& light, const Json& no
 TEST(AppRender, TheScenesOwnLightGivesItsColorAndDirection) {
     const ScratchFolder folder;
     const std::vector<std::string> front = {"--camera", "0,0,4,0,0,0"};
-    // It shines along -Z of its node: untouched, on the side that the camera sees.
+    // The light shines along -Z of its node: without a rotation, on the side that the camera sees.
     write_lit_square(folder.file("front.gltf"), {{"type", "directional"}, {"color", {1.0, 0.0, 0.0}}},
                      {{"name", "sun"}});
     const std::vector<std::uint8_t> red = picture_of(folder, folder.file("front.gltf"), front).at(48, 32);
@@ -181,7 +181,7 @@ TEST(AppRender, ResolutionIsBounded) {
     EXPECT_LT(bricks("32"), bricks("2048"));
 }
 
-/// What a run of `cairn render` left behind.
+/// Output of a run of `cairn render`.
 struct Rendered {
     Json figures;
     std::string png;  ///< the bytes of the file
@@ -220,8 +220,8 @@ TEST(AppRender, TraversalsAndTileQueriesMakeTheSamePictureInAnotherWay) {
 
 TEST(AppRender, TreesHaveTheShapeThatIsAskedFor) {
     const ScratchFolder folder;
-    // Both have 16 voxels across the scene, all of which are as wide as several pixels, so that neither tree
-    // shows coarser ones anywhere.
+    // Both trees have 16 voxels across the scene. Each voxel is several pixels wide, so that neither tree
+    // shows coarser voxels anywhere.
     const auto render = [&](const char* resolution, std::vector<std::string> options) {
         options.insert(options.end(), {"--max-resolution", resolution});
         return rendered(folder, "builtin:cornell", options);

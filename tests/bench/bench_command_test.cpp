@@ -62,7 +62,7 @@ TEST(BenchVoxelize, SaysThatGnuplotIsMissingAndStillWritesTheTable) {
     EXPECT_FALSE(std::filesystem::exists(folder.file("voxelize.png")));
 }
 
-/// Runs a chart of tiny size. @return its rows, which the CSV has too, under the names of `columns`.
+/// Runs a chart at a tiny size, and checks the CSV's header and number of rows. @return its rows.
 nlohmann::json rows_of(const std::string& chart, const std::string& size, const std::string& scene,
                        const ScratchFolder& folder, const std::string& columns = {}) {
     std::vector<std::string> words = {"bench", chart, "--resolutions",       size, "--runs",

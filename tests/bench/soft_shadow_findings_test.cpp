@@ -1,5 +1,6 @@
-// What Atty et al. 2005, section 4.2, found of the error of soft shadow maps, as inequalities; and, where
-// ours behave in another way, what is true instead. The chart `cairn bench soft-shadow-map` draws the curves.
+// The findings of Atty et al. 2005, section 4.2, on the error of soft shadow maps, as inequalities; and,
+// where ours behave in another way, what is true instead. The chart `cairn bench soft-shadow-map` draws the
+// curves.
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +29,7 @@ using renderer::ShadowPasses;
 using renderer::SoftShadowMap;
 using renderer::SoftShadowOptions;
 
-constexpr int receiver_size = 96;  // a truth at 32 x 32 points of it
+constexpr int receiver_size = 96;  // texels; the truth is known at 32 x 32 of them
 
 SoftShadowOptions map_of(int size, ShadowPasses passes, ShadowFormat format = ShadowFormat::fp32) {
     return {size, receiver_size, passes, format};
@@ -55,7 +56,7 @@ public:
                                           StudyWindow window = StudyWindow::fitted) const {
         return soft_shadow_errors(map(options, window).visible(), points_, truth_);
     }
-    /// Mean errors of one and of two passes.
+    /// Mean errors of one pass and of two passes.
     [[nodiscard]] double one(int size, StudyWindow window = StudyWindow::fitted) const {
         return errors(map_of(size, ShadowPasses::one), window).mean;
     }
@@ -79,7 +80,7 @@ protected:
     const ShadowOccluder knot_{"builtin:knot"};
 };
 
-/// What is seen of the light past the unit square, in closed form.
+/// The share of the light that is seen past the unit square, in closed form.
 double seen_past_square(const StudyCase& study, const glm::dvec3& point) {
     const glm::dvec3 light = study.light().position;
     const double x = -light.x;
@@ -89,8 +90,8 @@ double seen_past_square(const StudyCase& study, const glm::dvec3& point) {
                         optics::half_size(study.light()));
 }
 
-// What all the figures stand on: the points lie on the floor, where the texels of the map say what they see;
-// and the truth there is the truth.
+// All figures depend on this: the points lie on the floor, at the places of the map's texels, and the truth
+// of these points is right.
 TEST_F(SoftShadowFindings, StandOnTheRightPointsAndTheRightTruth) {
     const Placed placed(square_, {.light_width = 0.6, .lateral = 0.4, .gap = 0.7});
     const renderer::ShadowMapValues visible = placed.map(map_of(50, ShadowPasses::one)).visible();
@@ -200,7 +201,7 @@ TEST_F(SoftShadowFindings, APointLightIsWrongAtTheShadowsEdgeAlone) {
     const renderer::ShadowMapValues visible = map.visible();
     const renderer::ShadowFrustum frustum = map.frustum();
     const glm::dvec2 texel = (frustum.occluders.high - frustum.occluders.low) / double(size);
-    // A truth around each wrong point, on the floor, one and a half texels of the occluder map away.
+    // The truth on the floor around each wrong point, one and a half texels of the occluder map away.
     const reference::ImageTracer tracer(knot_.scene(), knot_.snapshot());
     for (std::size_t i = 0; i < point.truth().size(); ++i) {
         const glm::ivec2 at = point.points().texels[i];
@@ -219,10 +220,10 @@ TEST_F(SoftShadowFindings, APointLightIsWrongAtTheShadowsEdgeAlone) {
 }
 
 // 4.2.5 finds the least error under the light, growing to both sides. Not so here: an occluder that moves
-// aside under a light parallel to the floor is sheared in light space, no more: depths, patches and the light
-// as seen from the floor stay as they were, and only what its middle sees of the occluder changes. That makes
-// less than a factor of two, to either side; of the knot (which is no mirror image of itself) it falls to one
-// side. The square has no shape to change: its error is the same everywhere.
+// aside under a light parallel to the floor is only sheared in light space. Depths, patches and the light as
+// seen from the floor stay the same; only the part of the occluder that the light's middle sees changes. This
+// changes the error by less than a factor of two, to either side; for the knot, which is not its own mirror
+// image, the error falls to one side. For the square, which is flat, the error is the same everywhere.
 TEST_F(SoftShadowFindings, MovingAsideChangesLittle) {
     std::vector<double> means;
     for (const double lateral : {-1.5, -0.75, 0.0, 0.75, 1.5})
