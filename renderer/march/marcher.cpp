@@ -11,11 +11,11 @@
 #include "shaders/interop/mesh.h"
 #include "shaders/interop/pool.h"
 #include "shaders/interop/shadow_rays.h"
+#include "shaders/interop/threads.h"
 
 namespace cairn::renderer {
 namespace {
 
-constexpr unsigned group_size = 64;
 /// Passes in a row in which rays only pause: a ray crosses fewer than 8 cells for each voxel across the root
 /// cube.
 /// With windows, that many in each.
@@ -223,7 +223,7 @@ void Marcher::run(const Dispatch& dispatch, Round round, const BrickPool& pool, 
     program.set("pool_levels", pool.levels());
     set_mix(program);
     program.use();
-    gl::dispatch_threads(dispatch.rays, group_size);
+    gl::dispatch_threads(dispatch.rays, THREADS_PER_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

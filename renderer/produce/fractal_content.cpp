@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "shaders/interop/produce.h"
+#include "shaders/interop/threads.h"
 
 namespace cairn::renderer {
 namespace {
 
 constexpr std::size_t batch = 1024;
-constexpr unsigned group_size = 64;
 
 bool is_occupied(const Tile& tile, const TreeShape& shape) {
     return shape.n == 3 ? sponge::occupied(tile.position, tile.level)
@@ -78,7 +78,7 @@ std::vector<Produced> FractalProducer::produce(std::span<const BrickRequest> req
         auto run = [&](const gl::Program& program, std::size_t threads) {
             program.use();
             program.set("tile_count", unsigned(count));
-            gl::dispatch_threads(threads, group_size);
+            gl::dispatch_threads(threads, THREADS_PER_GROUP);
         };
         run(texels_, count * side * side * side);
         run(masks_, count * words);

@@ -1,9 +1,10 @@
 // One thread is one triangle of a batch: its plane and its coordinates as this view sees them.
 #include "interop/mesh.h"
+#include "interop/threads.h"
 #include "mesh/mesh_view.glsl"
 #include "voxelize/surface.glsl"
 
-#define GROUP_SIZE 64
+#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_MESH_TRIANGLES) restrict writeonly buffer MeshTriangleBlock {

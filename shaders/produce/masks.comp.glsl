@@ -2,10 +2,11 @@
 // that rays skip by. One dispatch a mip, finest first: a voxel counts when a finer one in it does, which the
 // alpha mask's samples alone would not always say.
 #include "interop/produce.h"
+#include "interop/threads.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
 
-#define GROUP_SIZE 64
+#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };

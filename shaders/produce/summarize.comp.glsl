@@ -1,10 +1,11 @@
 // One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With
 // TELL_EMPTY, where the oracle is not exact, it also tells whether there is anything in the tile at all.
 #include "interop/produce.h"
+#include "interop/threads.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
 
-#define GROUP_SIZE 64
+#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
