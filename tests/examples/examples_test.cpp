@@ -1,5 +1,5 @@
-// The examples, each run as its user runs it, against what the library and the reference say; and the README,
-// which shows a part of one.
+// The examples, run as their users run them, against the library and the reference; and the README, which
+// shows a part of one.
 
 #include <algorithm>
 #include <array>
@@ -65,7 +65,7 @@ Picture picture_of(const optics::Image& image) {
 
 class Examples : public testing::Test {
 protected:
-    /// Runs an example to its end; @return what it printed.
+    /// Runs an example to its end. @return its output.
     std::string run(const std::string& arguments, const std::string& through = "") {
         const std::string line =
             fmt::format("{} {}/{} >{}", through, CAIRN_EXAMPLES, arguments, folder_.file("out"));
@@ -114,7 +114,8 @@ TEST_F(Examples, VoxelizeToVdbWritesTheExactVoxels) {
     EXPECT_GT(vdb.size(), voxels / 8);
 }
 
-/// Of the example's formula, its wall's colours by the side of it, and nothing outside its ball.
+/// The picture shows the example's formula: each side of its wall has a colour, and outside its ball there is
+/// nothing.
 TEST_F(Examples, OwnProducerShowsItsFormula) {
     const std::string out = run("own_producer " + file("gyroid.ppm"));
     int bricks = 0;

@@ -1,4 +1,4 @@
-// All methods of shadows by their one face: the same scene, moments that move, and what a method cannot do.
+// All methods of shadows through ShadowRenderer: one scene, moving moments, and the limits of each method.
 
 #include "renderer/shadow_renderer.h"
 
@@ -70,7 +70,8 @@ void expect_refused(const std::function<void()>& call, const std::string& part) 
 TEST_F(ShadowRenderers, AllAreNearTheSameTruth) {
     const Ball ball;
     View view = view_under(optics::aimed_light({0.6, 3.0, 1.6}, {0.0, 0.5, 0.0}, 0.5, 0.5));
-    view.detail.pixel_error = 0.1;  // shadows are no sharper than voxels, and pixels are large here
+    // Shadows are no sharper than voxels, and pixels are large here.
+    view.detail.pixel_error = 0.1;
     const reference::ImageTracer tracer(ball.made.scene, ball.made.whole);
     const reference::ShadowQuestion question{ball.made.scene, ball.made.whole, ball.floor,      view.camera,
                                              view.light,      view.size.width, view.size.height};
@@ -93,7 +94,7 @@ TEST_F(ShadowRenderers, AllAreNearTheSameTruth) {
     }
 }
 
-// The parts of a picture do not depend on what else is asked for, nor on what was shown before.
+// The parts of a picture do not depend on the other parts of the request, nor on pictures before.
 TEST_F(ShadowRenderers, PartsAreThoseOfTheWhole) {
     const Ball ball;
     const View view = view_under(light_above(3.0, 0.3, 0.3));
