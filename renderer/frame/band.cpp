@@ -50,7 +50,7 @@ int draw_mix(Band& band, const Mix& mix, const voxelizer::Grid& grid, int row) {
         band.mix.mesh_first_row = mesh.first_row;
         band.mix.mesh_shadows = mix.mesh_shadows;
         band.mix.voxels_hidden = mix.voxels_hidden;
-        band.mix.mesh_own_height = mix.meshes_are_voxelized ? MESH_OWN_HEIGHT : 0.0F;
+        band.mix.mesh_self_shadow_height = mix.meshes_are_voxelized ? MESH_SELF_SHADOW_HEIGHT : 0.0F;
         end = std::min(end, mesh.first_row + mesh.rows);
     }
     if (mix.proxy != nullptr) {

@@ -156,7 +156,7 @@ void Marcher::set_mix(const gl::Program& program) const {
         program.set("mesh_first_row", mix_.mesh_first_row);
         program.set("voxels_hidden", int(mix_.voxels_hidden));
         program.set("mesh_shadows", int(mix_.mesh_shadows));
-        program.set("mesh_own_height", mix_.mesh_own_height);
+        program.set("mesh_self_shadow_height", mix_.mesh_self_shadow_height);
     }
     if (mix_.proxy_span != 0) program.set("proxy_first_row", mix_.proxy_first_row);
 }

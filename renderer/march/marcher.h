@@ -52,8 +52,9 @@ struct MarchMix {
     int mesh_first_row = 0;  ///< of the picture, in those
     bool voxels_hidden = false;
     bool mesh_shadows = false;  ///< voxels cast shadows on meshes
-    float mesh_own_height =
-        0.0F;               ///< voxels whose centres are no further over a mesh are its own; in their sides
+    /// In sides of a voxel: voxels whose centres lie lower over a mesh are part of its surface and cast no
+    /// shadow on it.
+    float mesh_self_shadow_height = 0.0F;
     GLuint proxy_span = 0;  ///< 0: no proxy
     GLuint proxy_faces = 0;
     int proxy_first_row = 0;

@@ -46,13 +46,13 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     : shape_(shape),
       surface_(surface),
       lists_(lists),
-      tell_empty_(shape.cell_base() != 2 || surface.has_mask),
+      finds_empty_(shape.cell_base() != 2 || surface.has_mask),
       pairs_(surface.chunks.size()) {
     const std::size_t brick_bytes = scratch_bytes_a_brick(shape, surface.has_color);
     batch_ = int(std::clamp<std::size_t>(scratch_budget_bytes / brick_bytes, 1, 0xFFFF));
     gl::Defines defines = shape.defines(surface.has_color);
     resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
-    defines.emplace_back("TELL_EMPTY", tell_empty_ ? "1" : "0");
+    defines.emplace_back("FINDS_EMPTY", finds_empty_ ? "1" : "0");
     defines.emplace_back("HAS_MASK", surface.has_mask ? "1" : "0");
     masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
     summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
@@ -64,7 +64,7 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     for (gl::Program* program : {&splat_, &resolve_})
         program->set("sums_offset", unsigned(std::size_t(batch_) * voxels_a_brick(shape) * 2));
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
-    if (tell_empty_)
+    if (finds_empty_)
         found_ = gl::Buffer(std::size_t(batch_) * sizeof(std::uint32_t), "bricks that hold anything");
     pair_buffer_ = gl::Buffer(pair_capacity * sizeof(interop::BrickPair), "brick pairs");
 }
@@ -75,7 +75,7 @@ std::vector<Produced> SurfaceProducer::produce(std::span<const BrickRequest> req
     for (std::size_t i = 0; i < requests.size(); i += std::size_t(batch_)) {
         const std::size_t count = std::min(std::size_t(batch_), requests.size() - i);
         produce_batch(requests.subspan(i, count), pool);
-        if (!tell_empty_) continue;
+        if (!finds_empty_) continue;
         const auto found = found_.read_all<std::uint32_t>(count);
         for (std::size_t k = 0; k < count; ++k)
             produced[i + k].constant = found[k] == 0;
@@ -162,7 +162,7 @@ void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
     tiles_.bind_storage(SSBO_BRICK_TILES);
     scratch_.bind_storage(SSBO_BRICK_SCRATCH);
     pool.bind_for_writing();
-    if (tell_empty_) {
+    if (finds_empty_) {
         found_.fill(0);
         found_.bind_storage(SSBO_BRICK_FOUND);
     }

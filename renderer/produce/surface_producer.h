@@ -37,7 +37,7 @@ private:
     voxelizer::TriangleIndex& lists_;
     /// The oracle may let tiles through that hold nothing: with N = 3, and where it decides alpha masks
     /// exactly and bricks sample them. Then the driver is asked.
-    bool tell_empty_;
+    bool finds_empty_;
     int batch_ = 1;
     gl::Program splat_;
     gl::Program masks_;

@@ -46,7 +46,7 @@ std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, 
     const gl::Program& lighting = programs_.get({mask_, view.is_soft != 0});
     lighting.set("mesh_first_row", receivers.first_row);
     lighting.set("mesh_shadows", 1);
-    lighting.set("mesh_own_height", receivers.own_height);
+    lighting.set("mesh_self_shadow_height", receivers.self_shadow_height);
     glFinish();
     const auto start = std::chrono::steady_clock::now();
     view_.bind_uniform(UBO_VIEW);

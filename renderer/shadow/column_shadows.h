@@ -18,8 +18,9 @@ struct ColumnReceivers {
     int first_row = 0;  ///< of the picture, in the textures
     GLuint nearest = 0;
     GLuint surface = 0;
-    float own_height = 0.0F;  ///< voxels whose centres are not so far over a receiver's plane, in their
-                              ///< sides, are its own surface
+    /// In sides of a voxel: voxels whose centres lie lower over a receiver's plane are part of its surface
+    /// and cast no shadow on it.
+    float self_shadow_height = 0.0F;
 };
 
 /// What tells the programs of shadow rays through a pyramid apart, beside its size.

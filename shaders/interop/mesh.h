@@ -20,9 +20,10 @@
 #define MESH_STRIP_PIXELS 4194304    // pixels of a picture that are drawn at once, in whole rows
 #define MESH_MISS 1e30               // the distance of what is not there
 #define MESH_NEAREST_PART 9.5367431640625e-7  // how near the eye a mesh may come, in sides of the mesh
-// A voxel that touches a triangle has its centre at most half a diagonal from its plane; a little more, where
-// the surface bends.
-#define MESH_OWN_HEIGHT 1.125
+// Voxels whose centres lie lower over a mesh are part of its surface and cast no shadow on it, in sides of a
+// voxel. The centre of a voxel that touches a triangle lies at most half a diagonal (0.87) from the triangle's
+// plane; a little further, where the surface bends.
+#define MESH_SELF_SHADOW_HEIGHT 1.125
 
 #ifdef __cplusplus
 namespace cairn::interop {

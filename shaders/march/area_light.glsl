@@ -5,6 +5,10 @@
 // same ones in every frame.
 #include "interop/shadow_rays.h"
 
+#define PI 3.14159265
+#define QUARTER_PI 0.78539816339
+#define HASH_ROW_PIXELS 16384u  // no picture is wider, so pixels have different hashes
+
 // Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg.
 uint hashed(uint x) {
     const uint state = x * 747796405u + 2891336453u;
@@ -17,7 +21,7 @@ float unit_of(uint x) { return float(x >> 8u) * (1.0 / 16777216.0); }
 
 // Sample i of the pixel, in the unit square. `pixel` in the band.
 vec2 sample_place(ivec2 pixel, uint i) {
-    const uint x_turn = hashed(uint(pixel.x) + 16384u * uint(pixel.y + view.first_row));
+    const uint x_turn = hashed(uint(pixel.x) + HASH_ROW_PIXELS * uint(pixel.y + view.first_row));
     const uint y_turn = hashed(x_turn ^ 0x9E3779B9u);
     const float x = (float(i) + 0.5) / float(view.shadow_rays);
     return fract(vec2(x, unit_of(bitfieldReverse(i))) + vec2(unit_of(x_turn), unit_of(y_turn)));
@@ -29,8 +33,7 @@ vec2 on_disk(vec2 place) {
     const bool wide = abs(p.x) > abs(p.y);
     const float radius = wide ? p.x : p.y;
     const float part = (wide ? p.y : p.x) / (radius == 0.0 ? 1.0 : radius);
-    const float quarter = 0.78539816339;
-    const float angle = wide ? quarter * part : 2.0 * quarter - quarter * part;
+    const float angle = wide ? QUARTER_PI * part : 2.0 * QUARTER_PI - QUARTER_PI * part;
     return radius * vec2(cos(angle), sin(angle));
 }
 
@@ -47,7 +50,7 @@ LightSample flat_sample(vec3 centre, vec3 point, vec2 p) {
     const vec3 way = centre + light_scale() * (p.x * view.light_half_u + p.y * view.light_half_v) - point;
     const float reach = length(way);
     const vec3 direction = way / reach;
-    const float square = view.light_shape == LIGHT_RECTANGLE ? 4.0 : 3.14159265;
+    const float square = view.light_shape == LIGHT_RECTANGLE ? 4.0 : PI;
     const vec3 across = cross(light_scale() * view.light_half_u, light_scale() * view.light_half_v);
     const float area = square * abs(dot(across, direction));
     return LightSample(direction, reach, sqrt(area / float(view.shadow_rays)) / reach);
@@ -67,8 +70,8 @@ LightSample cone_sample(LightPlace light, vec3 point, vec2 disk) {
     const vec3 axis = way / far;
     const vec3 side = normalize(cross(axis, abs(axis.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
     const vec3 direction = normalize((1.0 - lost) * axis + across * (disk.x * side + disk.y * cross(axis, side)));
-    const float width = sqrt(2.0 * 3.14159265 * widest / float(view.shadow_rays));
-    if (!positional) return LightSample(direction, 1e30, width);
+    const float width = sqrt(2.0 * PI * widest / float(view.shadow_rays));
+    if (!positional) return LightSample(direction, ENDLESS, width);
     // To the sphere's front: what is under its middle's height there is the other leg of a right triangle.
     const float off_axis = far * length(cross(axis, direction));
     const float under = radius * radius - off_axis * off_axis;

@@ -9,9 +9,9 @@
 // in.
 
 bool is_occupied(ivec3 voxel, Place place, int mip) {
-    const ivec3 b = place_in(voxel, own_shift_of(place) + mip, M_SHIFT - mip);
+    const ivec3 b = place_in(voxel, brick_voxel_shift_of(place) + mip, M_SHIFT - mip);
     const ivec3 c = cell_of(b, BLOCK_SHIFT);
-    const int blocks = MIP_BLOCKS_A_SIDE(mip);
+    const int blocks = MIP_BLOCKS_PER_SIDE(mip);
     const int word = place.slot * MASK_WORDS + first_mask_of(mip) + c.x + blocks * (c.y + blocks * c.z);
     return empty_voxel_shift(texelFetch(brick_masks, word).xy, b - cell_low(b, BLOCK_SHIFT)) < 0;
 }
@@ -25,7 +25,7 @@ bool take_both(inout Ray ray, Place place, out bool goes_on) {
 #else
     const bool blends = true;
 #endif
-    const float size = blended_size(own_shift_of(place), width_at_cell(ray, fine_shift + 1));
+    const float size = blended_size(brick_voxel_shift_of(place), width_at_cell(ray, fine_shift + 1));
     const float f = blends ? clamp(size / side - 1.0, 0.0, 1.0) : 0.0;
     const ivec3 cell = cell_of(ray.voxel, fine_shift + 1);
     goes_on = true;

@@ -3,18 +3,18 @@
 // up to N times that, where its parent takes over. In the first half of that range, by ratio, its own voxels
 // are shown: they are there, and coarser ones are less accurate. In the second half the size grows to that of
 // the parent's voxels, so that nothing changes where those come.
-float blended_size(int own_shift, float width) {
-    const float side = float(cell_side(own_shift));
+float blended_size(int brick_voxel_shift, float width) {
+    const float side = float(cell_side(brick_voxel_shift));
     precise float size = width * width / (float(TREE_N) * side);
     return max(size, side);
 }
 
 // The finer of the two mips around that size.
-int blended_mip(int own_shift, float width) {
-    const float size = blended_size(own_shift, width);
+int blended_mip(int brick_voxel_shift, float width) {
+    const float size = blended_size(brick_voxel_shift, width);
     int mip = 0;
     for (int k = 1; k < BRICK_MIPS; ++k) {
-        if (float(cell_side(own_shift + k)) <= size) mip = k;
+        if (float(cell_side(brick_voxel_shift + k)) <= size) mip = k;
     }
     return mip;
 }
@@ -37,8 +37,9 @@ float width_at_cell(Ray ray, int shift) {
 // and the next one are seen by whole voxels of the next one, and a cell is nearer than those that it holds:
 // so a ray that sees a mip sees all finer ones too, and what it sees depends on the place alone, not on the
 // way there.
-bool sees_mip(Ray ray, int own_shift, int mip) {
-    const float width = width_at_cell(ray, own_shift + mip + 1);
-    const float side = float(cell_side(own_shift));
-    return mip == 0 ? width >= side : blended_size(own_shift, width) >= float(cell_side(own_shift + mip));
+bool sees_mip(Ray ray, int brick_voxel_shift, int mip) {
+    const float width = width_at_cell(ray, brick_voxel_shift + mip + 1);
+    const float side = float(cell_side(brick_voxel_shift));
+    if (mip == 0) return width >= side;
+    return blended_size(brick_voxel_shift, width) >= float(cell_side(brick_voxel_shift + mip));
 }

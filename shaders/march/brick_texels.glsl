@@ -25,6 +25,10 @@ struct Corners {
     vec4 weights;  // of low, next, far, low + 1
 };
 
+// The weight of the voxel itself, the only one that is surely occupied, must not vanish: so much is added to
+// it. The sum of the weights need not be 1.
+#define VOXEL_EXTRA_WEIGHT 0.125
+
 // By hand, because the samplers' own filtering rounds by where in the pool the slot lies, and by driver; the
 // brick's border keeps it inside the slot.
 Corners corners_around(Sample s) {
@@ -40,9 +44,8 @@ Corners corners_around(Sample s) {
     c.next = c.low + up;
     c.far = c.low + 1 - left_out;
     c.weights = vec4(1.0 - most, most - other, other - least, least);
-    // That of the voxel itself, the only one that is surely occupied, must not vanish. The sum need not be 1.
-    const ivec3 own = s.texel + 1 + s.voxel - c.low;
-    c.weights += 0.125 * vec4(equal(ivec4(own.x + own.y + own.z), ivec4(0, 1, 2, 3)));
+    const ivec3 corner = s.texel + 1 + s.voxel - c.low;
+    c.weights += VOXEL_EXTRA_WEIGHT * vec4(equal(ivec4(corner.x + corner.y + corner.z), ivec4(0, 1, 2, 3)));
     return c;
 }
 

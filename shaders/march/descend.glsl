@@ -19,7 +19,7 @@ struct Place {
 };
 
 // Log2 of the side of the brick's own voxels.
-int own_shift_of(Place place) {
+int brick_voxel_shift_of(Place place) {
 #if PROGRESSIVE
     return place.brick_shift - M_SHIFT;
 #else
@@ -28,7 +28,7 @@ int own_shift_of(Place place) {
 }
 
 // Log2 of the side of the voxels that are shown (of the finer ones).
-int voxel_shift_of(Place place) { return own_shift_of(place) + place.mip; }
+int voxel_shift_of(Place place) { return brick_voxel_shift_of(place) + place.mip; }
 
 #if BLENDED
 // Has the cone grown past what the place was chosen for? The root's coarsest mip goes on for ever.
@@ -36,9 +36,9 @@ bool needs_coarser(Ray ray, Place place) {
 #if PROGRESSIVE
     if (place.brick_shift != place.tile_shift) return false;  // it stands in
 #endif
-    const int own_shift = own_shift_of(place);
-    if (place.mip + 1 < BRICK_MIPS) return sees_mip(ray, own_shift, place.mip + 1);
-    return place.tile_shift < ROOT_SHIFT && sees_mip(ray, own_shift + N_SHIFT, 0);
+    const int brick_voxel_shift = brick_voxel_shift_of(place);
+    if (place.mip + 1 < BRICK_MIPS) return sees_mip(ray, brick_voxel_shift, place.mip + 1);
+    return place.tile_shift < ROOT_SHIFT && sees_mip(ray, brick_voxel_shift + N_SHIFT, 0);
 }
 #endif
 

@@ -31,7 +31,7 @@ MeshPixel mesh;  // at the pixel
 // False when the thread has no pixel.
 bool find_pixel(out Launch launch) {
     const uint i = thread_index();
-    launch = Launch(ivec2(0), 0u, BlockStart(0u, 0.0, 1e30));
+    launch = Launch(ivec2(0), 0u, BlockStart(0u, 0.0, ENDLESS));
     if (i >= ray_count) return false;
     if (first_pass) {
         const int blocks = (view.width + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE;

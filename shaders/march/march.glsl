@@ -124,9 +124,9 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
 // Takes the voxel of a mip around the ray's voxel, which must be occupied, and brings the ray behind it.
 // `goes_on` says whether there is more of the ray; false when visit() has stopped it.
 bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_on) {
-    const int voxel_shift = own_shift_of(place) + mip;
+    const int voxel_shift = brick_voxel_shift_of(place) + mip;
     const ivec3 low = cell_low(ray.voxel, voxel_shift);
-    const ivec3 brick_low = cell_low(ray.voxel, own_shift_of(place) + M_SHIFT);
+    const ivec3 brick_low = cell_low(ray.voxel, brick_voxel_shift_of(place) + M_SHIFT);
     const float side = float(cell_side(voxel_shift));
     const float t_in = ray.t;
     Sample s;

@@ -1,5 +1,9 @@
 // A ray, and its steps from cell to cell.
 // Needs cells.glsl, MARCHED_SIDE (of the cube that rays march, in voxels) and the define WINDOWS.
+
+#define ENDLESS 1e30           // a distance that no ray reaches
+#define LEAST_DIRECTION 1e-20  // an axis along which a unit direction has less is inert
+
 struct Ray {
     vec3 origin;
     vec3 direction;       // unit
@@ -21,7 +25,7 @@ Ray make_ray(vec3 origin, vec3 direction, float t_end, float cone_base, float co
     Ray ray;
     ray.origin = origin;
     ray.direction = direction;
-    ray.inert = lessThan(abs(direction), vec3(1e-20));
+    ray.inert = lessThan(abs(direction), vec3(LEAST_DIRECTION));
     ray.inverse = mix(1.0 / mix(direction, vec3(1.0), ray.inert), vec3(0.0), ray.inert);
     ray.positive = ivec3(greaterThan(direction, vec3(0.0)));
     ray.t = 0.0;
@@ -44,8 +48,8 @@ bool enter_root(inout Ray ray) {
     // An inert axis bounds nothing when the origin lies between its planes, and everything when it does not.
     const bvec3 outside = notEqual(lessThanEqual(low, vec3(0.0)), greaterThanEqual(high, vec3(0.0)));
     if (any(bvec3(ray.inert.x && outside.x, ray.inert.y && outside.y, ray.inert.z && outside.z))) return false;
-    const vec3 ta = mix(low * ray.inverse, vec3(-1e30), ray.inert);
-    const vec3 tb = mix(high * ray.inverse, vec3(1e30), ray.inert);
+    const vec3 ta = mix(low * ray.inverse, vec3(-ENDLESS), ray.inert);
+    const vec3 tb = mix(high * ray.inverse, vec3(ENDLESS), ray.inert);
     const vec3 near = min(ta, tb);
     const vec3 far = max(ta, tb);
     const float t_near = max(max(near.x, near.y), max(near.z, ray.t));
@@ -63,7 +67,7 @@ bool enter_root(inout Ray ray) {
 void stay_behind_planes(inout Ray ray) {
     const bvec3 forward = equal(ray.positive, ivec3(1));
     const vec3 bound = vec3(mix(ray.voxel + 1, ray.voxel, forward));
-    const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(-1e30), ray.inert);
+    const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(-ENDLESS), ray.inert);
     const ivec3 back = mix(ivec3(0), mix(ivec3(1), ivec3(-1), forward), greaterThan(t, vec3(ray.t)));
     ray.voxel = clamp(ray.voxel + back, ivec3(0), ivec3(MARCHED_SIDE - 1));
 }
@@ -75,7 +79,7 @@ bool step_over(inout Ray ray, int shift) {
     const ivec3 high = low + (cell_side(shift) - 1);
     const ivec3 last = mix(low, high, equal(ray.positive, ivec3(1)));  // before the plane where it leaves
     const vec3 bound = vec3(last + ray.positive);
-    const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(1e30), ray.inert);
+    const vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(ENDLESS), ray.inert);
     const float t_plane = min(t.x, min(t.y, t.z));
     const float t_exit = max(t_plane, ray.t);
     // Rounding must carry the other coordinates neither out of the cell nor backwards.

@@ -1,6 +1,7 @@
 // From what a primary ray gathered and how much of the light reaches it, to a pixel.
 #include "interop/march.h"
 #include "interop/mesh.h"  // here, because a file is included once, and the next place is under a condition
+#include "common/sky_light.glsl"
 #include "march/picture.glsl"
 #include "march/pixel_ray.glsl"
 #include "march/ray_state.glsl"
@@ -43,7 +44,7 @@ vec3 facing_normal(RayState state, vec3 direction) { return facing_normal(state.
 // What a surface of base colour 1 sends to the viewer.
 vec3 light_on(vec3 point, vec3 normal, float visibility) {
     const float facing = max(dot(normal, direction_to_light(point)), 0.0);
-    const float sky = view.ambient * (0.75 + 0.25 * normal.y);
+    const float sky = view.ambient * sky_share(normal);
     return view.light_color * (sky + (1.0 - view.ambient) * facing * visibility);
 }
 

@@ -14,12 +14,16 @@ float level_of(Sample s) {
     return float(first_level) + float(ROOT_SHIFT - M_SHIFT - shift) / float(N_SHIFT);
 }
 
+// An axis whose part in the normal is at least this share of the greatest part: the surface runs along the
+// brick's sides across that axis.
+#define ALONG_SIDE 0.98
+
 // Is the sample near where the surface leaves its brick? A side that the surface runs along does not count:
 // it would be marked all over.
 bool near_brick_side(Sample s, vec3 normal) {
     const int last = MIP_M(s.mip) - 1;
     const vec3 across = abs(normal);
-    const bvec3 along = greaterThanEqual(across, vec3(0.98 * max(across.x, max(across.y, across.z))));
+    const bvec3 along = greaterThanEqual(across, vec3(ALONG_SIDE * max(across.x, max(across.y, across.z))));
     const bvec3 near = bvec3(any(equal(ivec2(s.voxel.x), ivec2(0, last))),
                              any(equal(ivec2(s.voxel.y), ivec2(0, last))),
                              any(equal(ivec2(s.voxel.z), ivec2(0, last))));

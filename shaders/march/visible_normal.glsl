@@ -7,6 +7,9 @@
 #include "interop/march.h"
 #include "pool/brick_normals.glsl"
 
+#define LEAST_SEEN 0.01  // of Faces::seen: with less, no side faces the viewer
+#define LEAST_SIZE 1e-3  // of Faces::all: with less, the normals cancel out
+
 struct Faces {
     vec3 seen;  // normals that face the viewer, each times the part of the picture that it covers
     vec3 all;
@@ -34,9 +37,9 @@ Faces filtered_faces(Corners c, vec3 direction) {
 
 vec3 visible_normal(Faces faces, vec3 direction) {
     const float seen = length(faces.seen);
-    if (seen > 0.01) return faces.seen / seen;
+    if (seen > LEAST_SEEN) return faces.seen / seen;
     const float size = length(faces.all);
-    if (size < 1e-3) return -direction;
+    if (size < LEAST_SIZE) return -direction;
     const vec3 normal = faces.all / size;
     const float away = dot(normal, direction);
 #if BLENDED

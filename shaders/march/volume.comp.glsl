@@ -14,6 +14,9 @@
 
 // Of a volume, `state` gathers in color.rgb what is seen without the light, in normal what the light adds.
 
+// A pixel to which the light adds less than this in every channel sends no shadow ray.
+#define LEAST_DIRECT_LIGHT (1.0 / 1024.0)
+
 // Light on a place in the volume.
 struct Lit {
     float sky;
@@ -27,7 +30,7 @@ Lit light_at(Ray ray, float t, vec3 gradient) {
     const vec3 normal = (dot(gradient, ray.direction) < 0.0 ? gradient : -gradient) / max(steep, 1e-6);
     const float facing = max(dot(normal, direction_to_light(ray.origin + ray.direction * t)), 0.0);
     const float ambient = view.ambient;
-    return Lit(ambient * mix(1.0, 0.75 + 0.25 * normal.y, surface), (1.0 - ambient) * mix(1.0, facing, surface));
+    return Lit(ambient * mix(1.0, sky_share(normal), surface), (1.0 - ambient) * mix(1.0, facing, surface));
 }
 
 // A stretch of the ray that absorbs and emits evenly. @return what it weighs in the pixel.
@@ -96,7 +99,7 @@ void main() {
         state.color.a = 0.0;
     }
     const vec3 direct = state.normal;
-    if (view.casts_shadows != 0 && max(direct.x, max(direct.y, direct.z)) > 1.0 / 1024.0) {
+    if (view.casts_shadows != 0 && max(direct.x, max(direct.y, direct.z)) > LEAST_DIRECT_LIGHT) {
         leave_to_shadow_ray(launch.index);
     } else {
         write_volume_pixel(launch.pixel, state, 1.0);

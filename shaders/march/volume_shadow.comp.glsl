@@ -37,7 +37,7 @@ bool visit_constant(Ray entered, ConstantRun run) {
 // A volume lets light through from all sides.
 float weight_of(inout LightSample there) { return 1.0; }
 
-float end_of_occluders(vec3 to_light) { return 1e30; }
+float end_of_occluders(vec3 to_light) { return ENDLESS; }
 
 bool trace_one(LightSample there, bool starts) {
     const Ray ray = make_ray(receiver, there.direction, there.reach, width, 0.0);

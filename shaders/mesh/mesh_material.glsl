@@ -20,6 +20,5 @@ SurfacePoint surface_point(MeshTriangle triangle, MeshHit hit) {
 // Whether the alpha mask leaves something there.
 bool is_shown(SurfacePoint point, SurfaceMaterial material) {
     if ((material.flags >> MATERIAL_MASK_BIT & 1u) == 0u) return true;
-    // The weights' sum is rounded, and the cutoff itself passes.
-    return alpha_at(point, material) * 1.00001 >= material.alpha_cutoff;
+    return alpha_at(point, material) * ALPHA_SLACK >= material.alpha_cutoff;
 }

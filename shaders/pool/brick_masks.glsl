@@ -6,9 +6,9 @@
 // slot.
 #include "pool/brick_levels.glsl"
 
-#define BLOCKS_A_SIDE (BRICK_M / BLOCK_SIDE)
-#define MIP_BLOCKS_A_SIDE(mip) max(MIP_M(mip) / BLOCK_SIDE, 1)
-#define MIP_BLOCKS(mip) CUBE(MIP_BLOCKS_A_SIDE(mip))
+#define BLOCKS_PER_SIDE (BRICK_M / BLOCK_SIDE)
+#define MIP_BLOCKS_PER_SIDE(mip) max(MIP_M(mip) / BLOCK_SIDE, 1)
+#define MIP_BLOCKS(mip) CUBE(MIP_BLOCKS_PER_SIDE(mip))
 
 // Word of a slot at which the masks of a mip start.
 int first_mask_of(int mip) {

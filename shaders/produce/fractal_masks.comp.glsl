@@ -22,9 +22,9 @@ void main() {
         bool full;
         if (is_summary) {
             const int of = 64 * word + bit;
-            full = of < BLOCKS && in_set(digits_of(place_of(of, BLOCKS_A_SIDE)));
+            full = of < BLOCKS && in_set(digits_of(place_of(of, BLOCKS_PER_SIDE)));
         } else {
-            full = in_set(digits_of(BLOCK_SIDE * place_of(block, BLOCKS_A_SIDE) + place_of(bit, BLOCK_SIDE)));
+            full = in_set(digits_of(BLOCK_SIDE * place_of(block, BLOCKS_PER_SIDE) + place_of(bit, BLOCK_SIDE)));
         }
         if (!full) continue;
         if (bit < 32) mask.x |= 1u << bit;

@@ -16,7 +16,7 @@ uniform int mip;
 #if HAS_MASK && BRICK_MIPS > 0
 // Is one of the 2^3 voxels of the next finer mip in voxel v occupied?
 bool any_finer(uint slot, ivec3 v) {
-    const int blocks = MIP_BLOCKS_A_SIDE(mip - 1);
+    const int blocks = MIP_BLOCKS_PER_SIDE(mip - 1);
     const ivec3 c = 2 * v >> 2;
     const uint word =
         slot * uint(MASK_WORDS) + uint(first_mask_of(mip - 1) + c.x + blocks * (c.y + blocks * c.z));
@@ -32,9 +32,9 @@ void main() {
     if (i >= tile_count * blocks) return;
     const uint tile = i / blocks;
     const int block = int(i % blocks);
-    const int blocks_a_side = MIP_BLOCKS_A_SIDE(mip);
-    const ivec3 low = BLOCK_SIDE * ivec3(block % blocks_a_side, block / blocks_a_side % blocks_a_side,
-                                         block / (blocks_a_side * blocks_a_side));
+    const int blocks_per_side = MIP_BLOCKS_PER_SIDE(mip);
+    const ivec3 low = BLOCK_SIDE * ivec3(block % blocks_per_side, block / blocks_per_side % blocks_per_side,
+                                         block / (blocks_per_side * blocks_per_side));
     const int side = min(BLOCK_SIDE, MIP_M(mip));
     const uint slot = uint(tiles[tile].slot);
     uvec2 mask = uvec2(0u);

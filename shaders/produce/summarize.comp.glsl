@@ -1,5 +1,5 @@
 // One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With
-// TELL_EMPTY, where the oracle is not exact, it also tells whether there is anything in the tile at all.
+// FINDS_EMPTY, where the oracle is not exact, it also tells whether there is anything in the tile at all.
 #include "interop/produce.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
@@ -9,7 +9,7 @@
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
 
-#if TELL_EMPTY
+#if FINDS_EMPTY
 layout(std430, binding = SSBO_BRICK_FOUND) buffer FoundBlock { uint found[]; };
 #endif
 
@@ -22,8 +22,9 @@ bool is_full(uint first, uint block) {
 #if BRICK_MIPS > 2 || HAS_MASK && BRICK_MIPS > 0
     // Every mip's voxels lie in occupied ones of the coarsest.
     const int b = int(block);
-    const ivec3 place = ivec3(b % BLOCKS_A_SIDE, b / BLOCKS_A_SIDE % BLOCKS_A_SIDE, b / (BLOCKS_A_SIDE * BLOCKS_A_SIDE));
-    const int blocks = MIP_BLOCKS_A_SIDE(BRICK_MIPS);
+    const ivec3 place = ivec3(b % BLOCKS_PER_SIDE, b / BLOCKS_PER_SIDE % BLOCKS_PER_SIDE,
+                              b / (BLOCKS_PER_SIDE * BLOCKS_PER_SIDE));
+    const int blocks = MIP_BLOCKS_PER_SIDE(BRICK_MIPS);
     const ivec3 low = 4 * place >> BRICK_MIPS;
     const ivec3 high = 4 * place + 3 >> BRICK_MIPS;
     for (int z = low.z; z <= high.z; ++z) {
@@ -52,7 +53,7 @@ void main() {
         else summary.y |= full << (bit - 32u);
     }
     brick_masks[first + word] = summary;
-#if TELL_EMPTY
+#if FINDS_EMPTY
     if ((summary.x | summary.y) != 0u) atomicOr(found[i / uint(SUMMARY_WORDS)], 1u);
 #endif
 }

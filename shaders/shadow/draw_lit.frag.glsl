@@ -1,6 +1,7 @@
 // Projects the soft shadow map onto the scene: a receiver's point takes the light that the map says it sees.
 // What lies outside the map's window, or behind the light, is lit.
 #include "interop/shadow_map.h"
+#include "common/sky_light.glsl"
 #include "shadow/material.glsl"
 #include "shadow/window.glsl"
 
@@ -53,7 +54,7 @@ void main() {
     if (is_hole(surface_texcoord, surface_color.a)) discard;
     const float visible = is_receiver != 0 ? visible_at(light_position) : 1.0;
     const float facing = max(dot(normal, normalize(light - surface_position)), 0.0);
-    const float sky = light_color.w * (0.75 + 0.25 * normal.y);
+    const float sky = light_color.w * sky_share(normal);
     color = vec4(base.rgb * light_color.rgb * (facing * visible * (1.0 - light_color.w) + sky), 1.0);
     visible_distance = vec2(is_receiver != 0 ? visible : -1.0, distance(eye, surface_position));
 }

@@ -12,7 +12,7 @@ layout(std430, binding = SSBO_COLUMN_COUNTS) buffer CountBlock { uint paused; };
 #define GROUP_SIZE 64
 #include "common/thread.glsl"
 #include "shadow/trace_columns.glsl"
-#include "march/own_surface.glsl"
+#include "march/self_shadow.glsl"
 #include "march/shade.glsl"
 #include "march/shadow_rays.glsl"
 
@@ -21,7 +21,7 @@ uniform bool first_pass;
 #define ALL_RAYS 0xFFFFFFFFu  // ShadowSum.ray: the pixel is done
 
 bool visit_voxel(ivec3 voxel, float t) {
-    return is_own(vec3(voxel) + 0.5 - receiver, t, own_height, own_reach);
+    return is_receiver_voxel(vec3(voxel) + 0.5 - receiver, t, self_shadow_height, self_shadow_reach);
 }
 
 // Between two rays a pixel may pause; a ray alone takes few turns.
@@ -34,12 +34,12 @@ bool pauses_before_ray() {
 // Nothing that stands under the receiver's horizon lights it.
 float weight_of(inout LightSample there) { return dot(receiver_normal, there.direction) > 0.0 ? 1.0 : 0.0; }
 
-float end_of_occluders(vec3 to_light) { return 1e30; }
+float end_of_occluders(vec3 to_light) { return ENDLESS; }
 
 bool trace_one(LightSample there, bool starts) {
     look_to_light(there.direction, 1.0);
     Ray ray = make_ray(receiver, there.direction, there.reach, 0.0, 0.0);
-    ray.t = own_end(1.0);
+    ray.t = self_shadow_end(1.0);
     visibility = trace_columns(ray, shadow_turns) ? 0.0 : 1.0;
     return true;
 }
@@ -55,7 +55,7 @@ void main() {
     if (mesh_needs_shadow_ray(mesh, seen, 1.0)) {
         receiver = mesh_point(mesh, seen);
         receiver_normal = mesh.plane;
-        own_height = mesh_own_height;
+        self_shadow_height = mesh_self_shadow_height;
         if (!find_light(pixel, index, first_pass)) {
             atomicAdd(paused, 1u);
             return;

@@ -31,7 +31,7 @@ bool visit_voxel(ivec3 voxel, float t);
 // When the ray crosses these planes, one an axis; never those of an inert axis.
 vec3 crossing_times(Ray ray, ivec3 planes) {
     precise vec3 t = (vec3(planes) - ray.origin) * ray.inverse;
-    return mix(t, vec3(1e30), ray.inert);
+    return mix(t, vec3(ENDLESS), ray.inert);
 }
 
 // The voxel where the ray is once it has crossed all planes before time t, and of those at t the axes in

@@ -117,11 +117,13 @@ bool passes(float texel_alpha, float vertex_alpha, SurfaceMaterial material) {
     return uint(round(texel_alpha * 255.0)) * uint(round(vertex_alpha * 255.0 * 256.0)) >= material.alpha_threshold;
 }
 
-// The colour at a sample that is cut away, for a piece that has no other: the voxel is occupied because the
-// piece touches a texel nearby that is not. `weight`: 1, or next to nothing when there is none.
-vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 own_color, out float weight) {
-    weight = 1.0e-6;
-    if (material.width == 0u) return own_color;
+#define NOWHERE_WEIGHT 1.0e-6
+
+// The colour at a sample that the mask cuts away, for a piece that has no other samples: the voxel is occupied
+// because the piece touches a texel nearby that passes. `weight`: 1, or NOWHERE_WEIGHT if no such texel is found.
+vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 sample_color, out float weight) {
+    weight = NOWHERE_WEIGHT;
+    if (material.width == 0u) return sample_color;
     const vec4 vertex_color = vertex_color_at(p);
     const vec2 uv = texcoord_at(p);
     for (int i = 0; i < 9; ++i) {
@@ -131,15 +133,15 @@ vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 own_color, out 
         weight = 1.0;
         return material.base_color.rgb * vertex_color.rgb * linear_from_srgb(texel.rgb);
     }
-    return own_color;
+    return sample_color;
 }
 #endif
 
 // One sample, into `shown` or, where a mask cuts it away, into `hidden`.
-void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, SurfaceMaterial material, vec3 own_normal,
-                  float weight) {
+void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, SurfaceMaterial material,
+                  vec3 triangle_normal, float weight) {
     const vec3 color = color_at(p, material);
-    const vec3 normal = normal_at(p, own_normal);
+    const vec3 normal = normal_at(p, triangle_normal);
 #if HAS_MASK
     if ((material.flags >> MATERIAL_MASK_BIT & 1u) != 0u) {
         const float alpha = material.width != 0u ? nearest_texel(material, texcoord_at(p)).a : 1.0;
@@ -167,7 +169,7 @@ void main() {
 
     const dvec3 cross_product = cross(dvec3(b - a), dvec3(c - a));
     const double twice_area = length(cross_product);
-    const vec3 own_normal = twice_area > 0.0LF ? vec3(cross_product / twice_area) : vec3(0.0);
+    const vec3 triangle_normal = twice_area > 0.0LF ? vec3(cross_product / twice_area) : vec3(0.0);
     const double side = double(1 << voxel_shift);
     const int rows = sample_rows(piece, triangle, material);
     const int parts = rows * rows;
@@ -183,7 +185,7 @@ void main() {
         const float faces = max(float(share * faces_of_triangle), 1.0e-20);
         for (int part = 0; part < parts; ++part) {
             const vec2 middle = centroid_of_part(vec2(first), vec2(p), vec2(q), part, rows);
-            sample_point(shown, hidden, point_at(triangle, middle), material, own_normal, faces);
+            sample_point(shown, hidden, point_at(triangle, middle), material, triangle_normal, faces);
         }
     }
     float weight = max(shown.weight, ATTRIBUTE_LEAST_WEIGHT);

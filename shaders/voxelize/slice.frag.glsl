@@ -78,8 +78,7 @@ bool is_shown(vec2 place) {
     const float b = dot(slice_weight_b, vec3(place, 1.0)), c = dot(slice_weight_c, vec3(place, 1.0));
     const vec3 weights = max(vec3(1.0 - b - c, b, c), 0.0);
     point.weights = weights / (weights.x + weights.y + weights.z);
-    // The weights' sum is rounded, and the cutoff itself passes.
-    return alpha_at(point, material) * 1.00001 >= material.alpha_cutoff;
+    return alpha_at(point, material) * ALPHA_SLACK >= material.alpha_cutoff;
 }
 #endif
 

@@ -55,6 +55,10 @@ vec3 color_at(SurfacePoint p, SurfaceMaterial material) {
     return color;
 }
 
+// What an alpha is multiplied by before it is compared with a cutoff, for the sum of a point's weights is
+// rounded, and an alpha that equals the cutoff passes.
+#define ALPHA_SLACK 1.00001
+
 float alpha_at(SurfacePoint p, SurfaceMaterial material) {
     float alpha = material.base_color.a * vertex_color_at(p).a;
     if (material.width != 0u) alpha *= nearest_texel(material, texcoord_at(p)).a;

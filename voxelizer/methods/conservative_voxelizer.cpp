@@ -41,7 +41,7 @@ void ConservativeVoxelizer::mark_doubtful(const Region& region, unsigned count) 
 }
 
 /// Threads that share a triangle of a queue.
-unsigned ConservativeVoxelizer::threads_a_triangle(const Region& region, unsigned queue) {
+unsigned ConservativeVoxelizer::threads_per_triangle(const Region& region, unsigned queue) {
     unsigned of_class = VOXEL_SHARED_LEAST;
     for (unsigned smaller = VOXEL_QUEUE_SHARED; smaller < queue; ++smaller)
         of_class *= VOXEL_SHARED_FACTOR;
@@ -57,11 +57,11 @@ unsigned ConservativeVoxelizer::threads_a_triangle(const Region& region, unsigne
 /// busy for longer.
 void ConservativeVoxelizer::mark_queued(const Region& region, unsigned queue, unsigned count) {
     constexpr unsigned threads_at_once = 1U << 26;
-    const unsigned threads = threads_a_triangle(region, queue);
+    const unsigned threads = threads_per_triangle(region, queue);
     const unsigned triangles_at_once = std::max(threads_at_once / threads, 1U);
     set_region(mark_large_, region);
     mark_large_.set("queue", queue);
-    mark_large_.set("threads_a_triangle", threads);
+    mark_large_.set("threads_per_triangle", threads);
     mark_large_.use();
     for (unsigned first = 0; first < count; first += triangles_at_once) {
         const unsigned triangles = std::min(triangles_at_once, count - first);

@@ -24,7 +24,7 @@ private:
     /// Marks the bound chunk, or the bound subset of it; returns what the shaders left to the CPU.
     std::vector<MaskCandidate> mark_chunk(const Region& region, std::size_t count, bool has_subset);
     void mark_doubtful(const Region& region, unsigned count);
-    [[nodiscard]] static unsigned threads_a_triangle(const Region& region, unsigned queue);
+    [[nodiscard]] static unsigned threads_per_triangle(const Region& region, unsigned queue);
     void mark_queued(const Region& region, unsigned queue, unsigned count);
     /// Adds far triangles, and voxels that the CPU found.
     static void mark_on_cpu(const GpuSurface& surface, const Region& region,

@@ -18,7 +18,7 @@ namespace cairn::voxelizer {
 class PyramidBuilder;
 
 /// The most voxels of a region along an axis (VOXEL_REGION_SIDE in the shaders).
-constexpr int max_region_side = 16384;
+constexpr int voxel_region_side = 16384;
 
 /// How voxels are found. Only `conservative` is exact; the others are Forest et al.'s, to compare with.
 enum class Method : std::uint8_t {
@@ -50,7 +50,7 @@ public:
     ///                marked.
     /// @throws Error  Fault::memory when the region's bits pass the driver's shader-storage limit: the
     ///                message says what would fit. Fault::usage when the region has more than
-    ///                max_region_side voxels along an axis.
+    ///                voxel_region_side voxels along an axis.
     [[nodiscard]] BitGrid voxelize(const GpuSurface& surface, const Region& region,
                                    std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
