@@ -6,7 +6,7 @@
 
 namespace cairn::gl {
 
-/// What KHR_debug reported as an error or as undefined behaviour in the current context.
+/// The messages of KHR_debug about errors and undefined behaviour in the current context.
 class DebugLog {
 public:
     DebugLog() = default;
@@ -19,7 +19,7 @@ public:
     /// Starts listening to the current context; the log must outlive it.
     void attach();
 
-    /// Takes the messages gathered so far, with whatever glGetError still holds.
+    /// Returns and removes the messages gathered so far, and the errors that glGetError still holds.
     [[nodiscard]] std::vector<std::string> take();
 
     void add(std::string message);
