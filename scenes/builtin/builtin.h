@@ -18,11 +18,11 @@ struct Builtin {
 /// "needles" (3,000 slivers, a trial for voxelizers).
 /// The first three stand for the test scenes of Forest et al. 2009, Figure 5.
 ///
-/// All are a few metres across, centred at the origin, and the same on every machine: which triangles there
-/// are is decided by integers alone, and coordinates differ at most by what the last bit of a sine does.
+/// All are a few metres across, centred at the origin, and the same on every machine: integers alone decide
+/// which triangles there are, and coordinates differ at most by what the last bit of a sine changes.
 [[nodiscard]] std::span<const Builtin> builtins();
 
-/// @throws Error (Fault::usage) that lists the names when there is none of that name.
+/// @throws Error (Fault::usage) if no scene has that name; the message lists the names.
 [[nodiscard]] Scene make_builtin(std::string_view name);
 
 }  // namespace cairn::scenes
