@@ -18,7 +18,7 @@ namespace cairn::voxelizer {
 namespace {
 
 /// How many rows of a shared triangle a thread may have: its loops over rows and words stay far from the
-/// limit that VOXEL_REGION_SIDE tells of.
+/// limit that VOXEL_REGION_SIDE keeps.
 unsigned thread_rows(const Region& region) {
     return unsigned(std::clamp(VOXEL_REGION_SIDE / (region.size.x / 32 + 4), 1, VOXEL_THREAD_ROWS));
 }

@@ -56,7 +56,7 @@ std::vector<MaskCandidate> MaskedMarker::mark(const Region& region, unsigned que
 }
 
 unsigned MaskedMarker::list(const Region& region, unsigned queue, const Work& work) {
-    // The loops of a thread over rows and voxels stay far from the limit that VOXEL_REGION_SIDE tells of.
+    // The loops of a thread over rows and voxels stay far from the limit that VOXEL_REGION_SIDE keeps.
     const unsigned rows = work.last_row - work.first_row;
     const unsigned rows_per_thread = std::max(1U, unsigned(VOXEL_REGION_SIDE / region.size.x));
     const unsigned slices =

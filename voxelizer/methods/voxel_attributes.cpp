@@ -167,7 +167,7 @@ void AttributeVoxelizer::gather_chunk(const ChunkBinding& chunk, const Region& r
 }
 
 void AttributeVoxelizer::gather_queued(const ChunkBinding& chunk, const Region& region, unsigned count) {
-    // The loops of a thread over rows and voxels stay far from the limit that VOXEL_REGION_SIDE tells of.
+    // The loops of a thread over rows and voxels stay far from the limit that VOXEL_REGION_SIDE keeps.
     const unsigned rows_per_thread = std::max(1U, unsigned(VOXEL_REGION_SIDE / (16 * region.size.x)));
     constexpr unsigned most_threads = 1U << 24;
     std::vector<Work> waiting = {{0, count, 0, unsigned(region.size.y) * unsigned(region.size.z)}};
