@@ -31,8 +31,8 @@ void touch(int slot) { tile_report = TILE_REPORT_USED | uint(slot); }
 // A pixel has one ray in each pass.
 void leave_report(uint pixel) { tile_reports[pixel] = tile_report; }
 #else
-// By a list of words, and a bit for each, behind the stamps of the slots, that says whether any ray has asked.
-// @return false when there was no room for it.
+// By a list of words, and a bit for each, behind the stamps of the slots, that says whether any ray has
+// asked. @return false when there was no room for it.
 bool ask(uint word) {
 #if PROGRESSIVE
     // How many rays ask: several tiles may share a count, which only disturbs the order of their production.

@@ -41,8 +41,8 @@ bool is_receiver_voxel(Ray ray, vec3 centre, float t, float side) {
     const vec3 from_receiver = centre - receiver;
 #endif
 #if BLENDED || RAYS_WIDEN
-    // Voxels that stand in for missing ones, the coarser of two mips, and what a cone sees further on, are larger
-    // than the receiver's voxels.
+    // Voxels that stand in for missing ones, the coarser of two mips, and what a cone sees further on, are
+    // larger than the receiver's voxels.
     if (side > receiver_side && self_shadow_reach > 0.0) {
         height *= side / receiver_side;
         reach = max(reach, self_shadow_reach_of(side));
@@ -57,7 +57,8 @@ bool is_receiver_voxel(Ray ray, vec3 centre, float t, float side) {
 }
 
 #if SHADOW_CONES
-// A voxel whose side is more than this many sides of the receiver's voxels is coarse: levels differ by 2 or more.
+// A voxel whose side is more than this many sides of the receiver's voxels is coarse: levels differ by 2 or
+// more.
 #define COARSE_RATIO 1.5
 
 // Has the cone grown to voxels that are coarser than the receiver's?

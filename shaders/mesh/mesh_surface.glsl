@@ -8,7 +8,8 @@ layout(binding = TEXTURE_MESH_SURFACE) uniform usampler2D mesh_surface;
 uniform int mesh_first_row;     // of the picture, in these textures
 uniform bool voxels_hidden;     // they are not shown, and cast shadows all the same
 uniform bool mesh_shadows;      // voxels cast shadows on meshes
-// In sides of a voxel: voxels whose centres lie lower over the mesh are part of its surface (self_shadow.glsl).
+// In sides of a voxel: voxels whose centres lie lower over the mesh are part of its surface
+// (self_shadow.glsl).
 uniform float mesh_self_shadow_height;
 
 struct MeshPixel {

@@ -119,8 +119,9 @@ bool passes(float texel_alpha, float vertex_alpha, SurfaceMaterial material) {
 
 #define NOWHERE_WEIGHT 1.0e-6
 
-// The colour at a sample that the mask cuts away, for a piece that has no other samples: the voxel is occupied
-// because the piece touches a texel nearby that passes. `weight`: 1, or NOWHERE_WEIGHT if no such texel is found.
+// The colour at a sample that the mask cuts away, for a piece that has no other samples: the voxel is
+// occupied because the piece touches a texel nearby that passes. `weight`: 1, or NOWHERE_WEIGHT if no such
+// texel is found.
 vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 sample_color, out float weight) {
     weight = NOWHERE_WEIGHT;
     if (material.width == 0u) return sample_color;
