@@ -1,5 +1,5 @@
-// One thread is one waiting shadow ray, or a pixel's share of them: from what a primary ray saw, to the
-// light.
+// One thread is the waiting shadow rays of a pixel, one or more: from the surface that the primary ray met to
+// the light.
 #define RAYS_WIDEN SHADOW_CONES
 #define VISIT_TURNS 0
 #include "interop/march.h"
@@ -111,7 +111,7 @@ bool visit_constant(Ray entered, ConstantRun run) {
 }
 #endif
 
-// Distance behind which nothing stands between the receiver and a directional light.
+// Distance from the receiver past which no occluder stands before a directional light.
 float end_of_occluders(vec3 to_light) {
     if (view.has_shadow_ends == 0) return ENDLESS;
     const vec2 place = vec2(dot(receiver, view.shadow_across) + view.shadow_across_offset,
@@ -120,8 +120,8 @@ float end_of_occluders(vec3 to_light) {
     return texelFetch(shadow_ends, texel.y * SHADOW_ENDS_SIDE + texel.x).r - dot(receiver, to_light);
 }
 
-// The share of a sample that stands above the receiver's horizon. A cone is brought there as a whole: to the
-// middle of what is left of it.
+// The share of a sample that lies above the receiver's horizon. A cone that reaches below the horizon is
+// moved: to the middle of its part above.
 float weight_of(inout LightSample there) {
     const float rise = dot(receiver_normal, there.direction);
 #if SHADOW_CONES
@@ -137,7 +137,7 @@ float weight_of(inout LightSample there) {
 
 bool trace_one(LightSample there, bool starts) {
 #if SHADOW_CONES
-    const float widening = sqrt(float(TREE_N)) * there.width;  // the nearest level, by ratio
+    const float widening = sqrt(float(TREE_N)) * there.width;  // so that the nearest level, by ratio, is seen
 #else
     const float widening = 0.0;
 #endif
@@ -154,7 +154,8 @@ bool trace_one(LightSample there, bool starts) {
     return true;
 }
 
-// Where the rays start: at this depth of the pixel's ray, on a surface with this normal.
+// Sets the receiver, where shadow rays start: at this depth of the pixel's ray, on a surface with this
+// normal.
 void place_receiver(PixelRay seen, float depth, vec3 normal) {
     receiver = seen.origin + seen.direction * depth;
     receiver_normal = normal;

@@ -1,5 +1,7 @@
-// Through the empty cells of a brick, by its masks. Which block of voxels is empty: -1 when block c is not,
-// else log2 of an empty aligned cell's side, in blocks.
+// Skips the empty cells of a brick, by its masks.
+
+// Block c of a brick: -1 if it is not empty, else log2 of the side, in blocks, of an empty aligned cell
+// around it.
 int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 #if BLOCKS_PER_SIDE == 4
     return empty_shift_4(summary, c);
@@ -13,10 +15,10 @@ int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
 }
 
 #define SKIM_OCCUPIED 0  // the ray's voxel is occupied
-#define SKIM_LEFT 1      // the ray left the tile, or the mips of it that it sees
+#define SKIM_LEFT 1      // the ray left the tile, or now sees other mips of it
 #define SKIM_ENDED 2     // the ray is done
 
-// Skips the empty cells of a brick.
+// Moves the ray over the empty cells of a brick to an occupied voxel.
 int skim(inout Ray ray, Place place, inout int turns) {
     const int brick_voxel_shift = brick_voxel_shift_of(place);
 #if BLENDED
@@ -47,7 +49,7 @@ int skim(inout Ray ray, Place place, inout int turns) {
         if (!step_over(ray, shift)) return SKIM_ENDED;
         if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) return SKIM_LEFT;
 #if BLENDED
-        if (needs_coarser(ray, place)) return SKIM_LEFT;  // what is empty here may not be so there
+        if (needs_coarser(ray, place)) return SKIM_LEFT;  // other mips may be occupied here
 #endif
     }
     return SKIM_LEFT;
