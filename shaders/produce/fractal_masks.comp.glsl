@@ -1,5 +1,5 @@
-// One thread is one word of a new brick's masks. A tile that has a brick is occupied, so they are the same in
-// all.
+// One thread is one word of a new brick's masks. Only occupied tiles have bricks, so the masks are the same
+// in all bricks.
 #include "interop/produce.h"
 #include "produce/fractal.glsl"
 #include "pool/brick_masks.glsl"

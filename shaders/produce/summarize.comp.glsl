@@ -1,5 +1,5 @@
-// One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With
-// FINDS_EMPTY, where the oracle is not exact, it also tells whether there is anything in the tile at all.
+// One thread is one summary word of a new brick: one bit for each of 64 blocks, whether a voxel of any mip is
+// occupied in it. With FINDS_EMPTY, for oracles that are not exact, it also marks tiles that are not empty.
 #include "interop/produce.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
@@ -15,12 +15,13 @@ layout(std430, binding = SSBO_BRICK_FOUND) buffer FoundBlock { uint found[]; };
 
 uniform uint tile_count;
 
-// Without alpha masks the finest mip tells of all whose voxels are no larger than a block.
+// Whether a voxel of any mip is occupied in a block. Without alpha masks, the finest mip decides for all mips
+// whose voxels are no larger than a block.
 bool is_full(uint first, uint block) {
     const uvec2 mask = brick_masks[first + uint(SUMMARY_WORDS) + block];
     bool full = (mask.x | mask.y) != 0u;
 #if BRICK_MIPS > 2 || HAS_MASK && BRICK_MIPS > 0
-    // Every mip's voxels lie in occupied ones of the coarsest.
+    // Occupied voxels of every mip lie in occupied voxels of the coarsest mip.
     const int b = int(block);
     const ivec3 place = ivec3(b % BLOCKS_PER_SIDE, b / BLOCKS_PER_SIDE % BLOCKS_PER_SIDE,
                               b / (BLOCKS_PER_SIDE * BLOCKS_PER_SIDE));

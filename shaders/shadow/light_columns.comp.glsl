@@ -1,6 +1,6 @@
-// One thread is one pixel of a rasterized mesh: rays from there to samples of the light, through the
-// xy-reduced pyramid (Forest et al. 2009, section 3.1). What many rays leave undone goes on in the next pass,
-// between two rays.
+// One thread is one pixel of a rasterized mesh: it sends rays from the mesh to samples of the light, through
+// the xy-reduced pyramid (Forest et al. 2009, section 3.1). A thread with many rays may pause between two of
+// them, and goes on in the next pass.
 #include "interop/columns.h"
 #include "interop/march.h"
 
@@ -24,14 +24,14 @@ bool visit_voxel(ivec3 voxel, float t) {
     return is_receiver_voxel(vec3(voxel) + 0.5 - receiver, t, self_shadow_height, self_shadow_reach);
 }
 
-// Between two rays a pixel may pause; a ray alone takes few turns.
+// A pixel may pause between two rays; a single ray takes few turns.
 bool pauses_before_ray() {
     if (shadow_turns > TURN_BUDGET) return true;
     ++shadow_turns;
     return false;
 }
 
-// Nothing that stands under the receiver's horizon lights it.
+// 0 for samples under the receiver's horizon, which do not light it.
 float weight_of(inout LightSample there) { return dot(receiver_normal, there.direction) > 0.0 ? 1.0 : 0.0; }
 
 float end_of_occluders(vec3 to_light) { return ENDLESS; }
@@ -62,5 +62,5 @@ void main() {
         }
     }
     shadow_sums[index].ray = ALL_RAYS;
-    write_pixel(pixel, new_ray_state(), visibility, mesh, visibility);  // no voxel is shown
+    write_pixel(pixel, new_ray_state(), visibility, mesh, visibility);  // no voxels are shown
 }
