@@ -25,11 +25,11 @@ std::string footer() {
         "\nExit codes: 0 done, 1 a comparison found a difference, 2 wrong usage, 3 bad input file,\n"
         "4 no usable OpenGL 4.5 context, 5 out of memory, 130 interrupted.\n"
         "With CAIRN_GL_DEBUG in the environment, any error that OpenGL reports ends the work.\n"
-        "\n\"cairn VERB --help\" lists what a verb takes.";
+        "\n\"cairn VERB --help\" lists the options of a verb.";
     return text;
 }
 
-/// Refuses a missing or unknown verb, for which CLI11 has odd words.
+/// @throws Error (Fault::usage) if the verb is missing or unknown, in clearer words than those of CLI11.
 void check_verb(const CLI::App& command, const std::string* argument) {
     if (argument != nullptr && argument->starts_with('-')) return;  // an option
     std::string verbs;
@@ -39,10 +39,10 @@ void check_verb(const CLI::App& command, const std::string* argument) {
     }
     throw Error(Fault::usage, "",
                 argument == nullptr ? "a verb is missing" : fmt::format("there is no verb \"{}\"", *argument),
-                fmt::format("verbs: {}; \"cairn --help\" tells more", verbs));
+                fmt::format("verbs: {}; \"cairn --help\" describes them", verbs));
 }
 
-/// What CLI11 found wrong, in our words.
+/// An error of CLI11 as an Error of the command.
 Error usage_error(const CLI::App& command, const CLI::ParseError& error) {
     std::string asked = "cairn";
     for (const CLI::App* verb : command.get_subcommands())
@@ -51,7 +51,7 @@ Error usage_error(const CLI::App& command, const CLI::ParseError& error) {
     if (error.get_exit_code() == int(CLI::ExitCodes::ArgumentMismatch)) {
         what = what.substr(0, what.find(':')) + " takes one value, once";
     }
-    return {Fault::usage, "", what, fmt::format("\"{} --help\" lists what it takes", asked)};
+    return {Fault::usage, "", what, fmt::format("\"{} --help\" lists the options", asked)};
 }
 
 void add_verbs(CLI::App& command, Work& chosen) {
@@ -77,7 +77,7 @@ Work read_command_line(const std::vector<std::string>& arguments) {
     command->get_formatter()->column_width(38);
     command->footer(footer());
     check_verb(*command, arguments.empty() ? nullptr : &arguments.front());
-    std::vector<std::string> last_first(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
+    std::vector<std::string> last_first(arguments.rbegin(), arguments.rend());  // the order that CLI11 takes
     try {
         command->parse(std::move(last_first));
     } catch (const CLI::Success& asked_for_help) {

@@ -7,11 +7,13 @@
 
 namespace cairn::app {
 
-/// Reads a command line, and does none of its work yet. "--help" and "--version" are work, too: they print.
+/// Reads a command line and returns its work, which has not begun. "--help" and "--version" are work, too:
+/// they print.
 ///
-/// What an option names is looked at while the line is read: a folder must exist, a file must be writable.
+/// Folders and files that options name are checked while the line is read: a folder must exist, a file must
+/// be writable.
 /// @param arguments  without the program's name.
-/// @throws Error     Fault::usage: the verb is missing or unknown, or an option is not as it must be.
+/// @throws Error     Fault::usage: if the verb is missing or unknown, or an option is invalid.
 [[nodiscard]] Work read_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace cairn::app

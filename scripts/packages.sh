@@ -20,6 +20,8 @@ view_packages=(libglfw3-dev libimgui-dev pkg-config)
 
 test_packages=(
   libgtest-dev libgmp-dev pkg-config glslang-tools xvfb xdotool
+  # the example inside_gl, with libglfw3-dev
+  libopengl-dev
   # to read back the voxel files that are written
   python3-numpy python3-openvdb libopenvdb-tools goxel
 )

@@ -8,13 +8,13 @@
 
 #include "base/error.h"
 
-/// Values that the command line knows by name.
+/// Values that have names on the command line.
 namespace cairn::app {
 
 template <typename Value>
 using Names = std::vector<std::pair<std::string_view, Value>>;
 
-/// The names with a separator between them, and another one before the last name: "none, hard or soft".
+/// The names, separated by `separator`, and the last one by `last_separator`: "none, hard or soft".
 template <typename Value>
 [[nodiscard]] std::string joined(const Names<Value>& names, std::string_view separator,
                                  std::string_view last_separator) {
@@ -35,7 +35,7 @@ template <typename Value>
     return std::nullopt;
 }
 
-/// @throws Error (Fault::usage) if no value has that name: names `option`, and the names there are.
+/// @throws Error (Fault::usage) if no value has that name: the error names `option` and lists all names.
 template <typename Value>
 [[nodiscard]] Value named(std::string_view option, std::string_view name, const Names<Value>& names) {
     if (const std::optional<Value> value = find_named(name, names)) return *value;
@@ -43,7 +43,8 @@ template <typename Value>
                 "choose " + joined(names, ", ", " or "));
 }
 
-/// The name of a value, which must have one.
+/// The name of a value.
+/// @throws Error (Fault::internal) if the value has no name.
 template <typename Value>
 [[nodiscard]] std::string name_of(const Value& value, const Names<Value>& names) {
     for (const auto& [name, known] : names) {

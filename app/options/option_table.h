@@ -13,21 +13,22 @@
 #include "app/options/names.h"
 #include "app/options/parse.h"
 
-/// Options of the command line as rows of a table. A row gives the reading of its option, its line of the
-/// help, and its part of a command line that means the same again. To add an option, add a row.
+/// Options of the command line as rows of a table. A row says how its option is read, what the help says of
+/// it, and how it is written into a command line. To add an option, add a row.
 namespace cairn::app {
 
 /// One option, whose value lies somewhere in an `Options`.
 template <typename Options>
 struct OptionRow {
-    /// As it is typed: "--size", or "-r,--resolution".
+    /// The name as it is typed: "--size", or "-r,--resolution".
     std::string name;
-    /// What stands for the value in the help: "WxH". Empty: a flag, which has no value.
+    /// The word for the value in the help, "WxH" for instance; empty if the option is a flag, without a
+    /// value.
     std::string value_name;
-    /// The help. "{default}" becomes what `print` says of the options before anything is parsed.
+    /// The help. "{default}" is replaced by what `print` returns before anything is parsed.
     std::string description;
     /// Reads `text`, which is empty for a flag. `option` is the long name, for errors.
-    /// @throws Error (Fault::usage) if the text is no value of the option.
+    /// @throws Error (Fault::usage) if the text is not a value of the option.
     std::function<void(Options&, const char* option, const std::string& text)> parse;
     /// A text that `parse` reads as the same value; none if the option was not given.
     std::function<std::optional<std::string>(const Options&)> print;
@@ -39,9 +40,9 @@ struct OptionRow {
 template <typename Options>
 using OptionTable = std::vector<OptionRow<Options>>;
 
-/// Rows of usual kinds. `member` takes the options and gives back the value in them by reference, const or
-/// not:
-/// `[](auto& options) -> auto& { return options.tree.n; }`. The value may be a std::optional of its type.
+/// Rows of usual kinds. `member` takes the options, const or not, and returns a reference to the value in
+/// them: `[](auto& options) -> auto& { return options.tree.n; }`. The value may be a std::optional of its
+/// type.
 /// @{
 
 /// A whole number within [low, high].
@@ -103,7 +104,7 @@ template <typename Options, typename Value, typename Member>
             }};
 }
 
-/// On when it is given.
+/// A flag: true if it is given.
 template <typename Options, typename Member>
 [[nodiscard]] OptionRow<Options> flag_row(const char* name, std::string description, Member member) {
     return {name, "", std::move(description),
@@ -115,12 +116,12 @@ template <typename Options, typename Member>
 }
 /// @}
 
-/// An option whose text `parse` reads; what it throws ends the parsing.
+/// Adds an option whose text `parse` reads. An exception of `parse` ends the parsing.
 CLI::Option* add_parsed_option(CLI::App& verb, const std::string& name, const std::string& value_name,
                                const std::string& description,
                                const std::function<void(const std::string&)>& parse);
 
-/// Teaches the options of a table to a verb. `options` must live until the command line has been read.
+/// Adds the options of a table to a verb. `options` must live until the command line has been read.
 template <typename Options>
 void add_table(CLI::App& verb, const OptionTable<Options>& table, Options& options,
                const std::string& group = "Options") {
@@ -141,10 +142,10 @@ void add_table(CLI::App& verb, const OptionTable<Options>& table, Options& optio
     }
 }
 
-/// A word of a command line for a POSIX shell: bare if no character of it has a meaning there, else quoted.
+/// A word of a command line for a POSIX shell: bare if no character has a meaning for the shell, else quoted.
 [[nodiscard]] std::string shell_word(std::string_view text);
 
-/// What the options of a table add to a command line: " --name=value" for each that differs from `Options{}`.
+/// The options of a table as part of a command line: " --name=value" for each that differs from `Options{}`.
 template <typename Options>
 [[nodiscard]] std::string command_line(const OptionTable<Options>& table, const Options& options) {
     const Options defaults{};

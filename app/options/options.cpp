@@ -15,7 +15,7 @@
 namespace cairn::app {
 namespace {
 
-/// A voxel is then 2^8 lattice units wide, which still tells where in it a vertex is.
+/// A voxel is then 2^8 lattice units wide, which leaves 8 bits for a vertex within its voxel.
 constexpr int max_grid_resolution = 65536;
 constexpr int max_scene_index = 1 << 20;
 constexpr const char* common_group = "Common options";
@@ -174,7 +174,7 @@ void check_grid_options(const GridOptions& options) {
     }
     if (!options.resolution && !options.voxel_size) {
         throw Error(Fault::usage, "", "--resolution or --voxel-size is required",
-                    "-r 256 makes a cube of 256 voxels a side");
+                    "-r 256 makes a cube of 256 voxels per side");
     }
 }
 

@@ -14,18 +14,19 @@
 #include "scenes/snapshot.h"
 #include "voxelizer/grid.h"
 
-/// What verbs have in common on the command line. An `add_...` function teaches options to a verb; they are
-/// stored where its second argument points when the command line has been read.
+/// Options that verbs have in common. An `add_...` function adds options to a verb; once the command line has
+/// been read, their values are in its second argument.
 namespace cairn::app {
 
-/// Where the figures go.
+/// Where the figures of a run go.
 struct ReportOptions {
-    std::optional<std::string> json;  ///< a file, or "-": stdout, and nothing else there
+    /// The file for the JSON; "-": stdout, which then holds nothing else.
+    std::optional<std::string> json;
     bool quiet = false;
 };
 void add_report_options(CLI::App& verb, ReportOptions& options);
 
-/// Which scene, and at which moment.
+/// Which scene is read, and at which moment of it.
 struct SceneOptions {
     std::string scene;  ///< a path or "builtin:NAME"
     bool trust_paths = false;
@@ -34,22 +35,22 @@ struct SceneOptions {
     std::optional<int> scene_index;
 };
 [[nodiscard]] OptionTable<SceneOptions> moment_table();
-/// `--trust-paths`.
+/// The option `--trust-paths`.
 [[nodiscard]] OptionTable<SceneOptions> trust_table();
-/// `SCENE` and `--trust-paths`.
+/// Adds the argument `SCENE` and the option `--trust-paths`.
 void add_scene_argument(CLI::App& verb, SceneOptions& options);
 void add_moment_options(CLI::App& verb, SceneOptions& options);
 
-/// Which driver and which shaders.
+/// Which driver and which shaders are used.
 struct DriverOptions {
     gl::ContextKind context = gl::ContextKind::automatic;
     gl::ShaderSource shaders;
 };
 void add_driver_options(CLI::App& verb, DriverOptions& options);
-/// The shaders alone, for a verb with a window.
+/// Adds the option of the shaders alone, for a verb with a window.
 void add_shader_option(CLI::App& verb, DriverOptions& options);
 
-/// The options that every verb that reads a scene at a moment understands.
+/// The options of every verb that reads a scene at a moment.
 struct CommonOptions {
     ReportOptions report;
     SceneOptions scene;
@@ -57,26 +58,27 @@ struct CommonOptions {
 };
 void add_common_options(CLI::App& verb, CommonOptions& options);
 
-/// Which voxels: exactly one of resolution and voxel_size, once check_grid_options has passed.
+/// Which grid is voxelized. After check_grid_options() exactly one of `resolution` and `voxel_size` is set.
 struct GridOptions {
     std::optional<glm::ivec3> resolution;
     std::optional<double> voxel_size;
     std::optional<scenes::Bounds> bounds;
 };
 [[nodiscard]] OptionTable<GridOptions> grid_table();
-/// @throws Error (Fault::usage) when they do not say how fine the grid is, or say it twice.
+/// @throws Error (Fault::usage) if neither or both of `resolution` and `voxel_size` are set.
 void check_grid_options(const GridOptions& options);
 [[nodiscard]] voxelizer::Grid make_grid(const GridOptions& options, const scenes::Bounds& scene);
 
-/// `-o FILE`, which must end in one of `endings` (".npy").
+/// Adds the option `-o FILE`. FILE must end in one of `endings` (".npy").
 CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,
                                const std::vector<std::string>& endings, const std::string& description);
 
-/// A device or a pipe: it needs no ending, and opening it only to look would be felt at its other end.
+/// Whether the path is a device or a pipe. It needs no ending, and it must not be opened just to check it:
+/// the reader of a pipe would notice.
 [[nodiscard]] bool is_device(const std::filesystem::path& path);
 
-/// Fails now, before any work, when a file cannot be written there. Leaves no trace.
-/// @throws Error (Fault::usage)
+/// Checks before any work that a file can be written at the path. Leaves no file behind.
+/// @throws Error (Fault::usage) if it cannot be written.
 void check_writable(const std::filesystem::path& path);
 
 }  // namespace cairn::app

@@ -13,7 +13,6 @@
 namespace cairn::app {
 namespace {
 
-constexpr int max_map_size = 2048;
 constexpr int max_truth_samples = 65536;
 
 double positive(const char* option, double value) {
@@ -46,7 +45,7 @@ std::optional<std::string> text_of(const std::optional<Value>& value) {
     return fmt::format("{}", *value);
 }
 
-/// An option of soft shadow maps, which notes that one was given.
+/// A row of an option of soft shadow maps: parsing it sets `map_given`.
 OptionRow<ShadowOptions> map_row(OptionRow<ShadowOptions> row) {
     row.parse = [parse = row.parse](ShadowOptions& options, const char* option, const std::string& text) {
         parse(options, option, text);
@@ -58,9 +57,9 @@ OptionRow<ShadowOptions> map_row(OptionRow<ShadowOptions> row) {
 OptionTable<ShadowOptions> method_table() {
     return {
         named_row<ShadowOptions>(
-            "--method", "what computes the shadow", shadow_method_names(),
+            "--method", "the method that computes the shadow", shadow_method_names(),
             [](auto& options) -> auto& { return options.method; }),
-        {"--compare", "embree", "tells how far the shadow is from that of Embree's rays",
+        {"--compare", "embree", "report the difference from the shadow by Embree's rays",
          [](ShadowOptions& options, const char* option, const std::string& text) {
              options.compare = named(option, text, Names<bool>{{"embree", true}});
          },
@@ -73,7 +72,7 @@ OptionTable<ShadowOptions> method_table() {
 OptionTable<ShadowOptions> light_table() {
     return {
         {"--light-direction", "X,Y,Z[,ANGLE]",
-         "a light that far away, and the degrees from its middle to\nits edge",
+         "a light infinitely far away in this direction, and the\ndegrees from its middle to its edge",
          [](ShadowOptions& options, const char* option, const std::string& text) {
              options.direction = direction_of(option, text);
          },
@@ -94,7 +93,8 @@ OptionTable<ShadowOptions> light_table() {
              options.disk = positive(option, parse_number(option, text));
          },
          [](const ShadowOptions& options) { return text_of(options.disk); }},
-        {"--light-target", "X,Y,Z", "what a rectangle or a disk shines on (default: the\nscene's middle)",
+        {"--light-target", "X,Y,Z",
+         "the point that a rectangle or a disk faces (default: the\nscene's middle)",
          [](ShadowOptions& options, const char* option, const std::string& text) {
              const std::vector<double> n = parse_numbers(option, text, 3, 3);
              options.target = {n[0], n[1], n[2]};
@@ -106,13 +106,15 @@ OptionTable<ShadowOptions> light_table() {
          }},
         whole_row<ShadowOptions>(
             "--rays", "N",
-            fmt::format("rays to the light, a pixel; 1 goes to its middle (default:\n{}, 1 where the light "
-                        "has no extent)",
-                        default_soft_rays),
+            fmt::format(
+                "rays per pixel to the light; a single ray goes to its\nmiddle (default: {}; 1 if the light "
+                "has no extent)",
+                default_soft_rays),
             1, MAX_SHADOW_RAYS, [](auto& options) -> auto& { return options.rays; }),
         flag_row<ShadowOptions>(
             "--cones",
-            "those rays are cones: each sees its share of the light\nthrough coarser voxels the further it "
+            "use cones instead of rays: each sees its share of the\nlight through coarser voxels the further "
+            "it "
             "goes",
             [](auto& options) -> auto& { return options.cones; }),
     };
@@ -123,28 +125,27 @@ OptionTable<ShadowOptions> map_table() {
     using renderer::ShadowPasses;
     return {
         map_row({"--map-size", "N",
-                 "texels a side of a soft shadow map; its occluder map has\nhalf (default: {default})",
+                 "texels per side of a soft shadow map; its occluder map\nhas half (default: {default})",
                  [](ShadowOptions& options, const char* option, const std::string& text) {
-                     options.map.receiver_size = parse_int(option, text, 2, max_map_size);
+                     options.map.receiver_size = parse_int(option, text, 2, renderer::max_shadow_map_size);
                      options.map.occluder_size = options.map.receiver_size / 2;
                  },
                  [](const ShadowOptions& options) { return std::to_string(options.map.receiver_size); }}),
         map_row(named_row<ShadowOptions>(
             "--passes",
-            "faces of the occluders that it knows: the closest to the\nlight, or the furthest too (default: "
-            "{default})",
+            "the occluders' faces that a soft shadow map holds: the\nclosest to the light, or the furthest "
+            "too (default:\n{default})",
             Names<ShadowPasses>{{"one", ShadowPasses::one}, {"two", ShadowPasses::two}},
             [](auto& options) -> auto& { return options.map.passes; })),
         map_row(named_row<ShadowOptions>(
-            "--format", "what it is summed in (default: {default})",
+            "--format", "the format of a soft shadow map's sums (default: {default})",
             Names<ShadowFormat>{{"fp16", ShadowFormat::fp16},
                                 {"fp16-batches", ShadowFormat::fp16_batches},
                                 {"fp32", ShadowFormat::fp32}},
             [](auto& options) -> auto& { return options.map.format; })),
         flag_row<ShadowOptions>(
             "--ground",
-            "adds a square under the scene, as wide as it takes to see\nshadows; it stays while the scene "
-            "moves",
+            "add a square under the scene, wide enough for its\nshadows; it stays while the scene moves",
             [](auto& options) -> auto& { return options.ground; }),
     };
 }
@@ -153,13 +154,13 @@ OptionTable<ShadowOptions> truth_table() {
     return {
         whole_row<ShadowOptions>(
             "--truth-samples", "N",
-            "samples of the light that each of Embree's pixels takes\nat least "
+            "the least number of samples of the light per pixel of\nEmbree's picture "
             "(default: {default})",
             64, max_truth_samples, [](auto& options) -> auto& { return options.truth_samples; }),
         text_row<ShadowOptions>(
             "--truth-cache", "DIR",
-            "keeps what Embree found of a soft light in this folder,\nand takes it from "
-            "there when nothing has changed",
+            "a folder that keeps Embree's shares of a soft light, for\nthe next run "
+            "with the same scene, view and light",
             [](auto& options) -> auto& { return options.truth_cache; }),
     };
 }
@@ -191,10 +192,10 @@ void add_shadow_options(CLI::App& verb, ShadowOptions& options) {
     add_table(verb, light_table(), options);
     verb.add_option(
             "--occluders", options.occluders,
-            "nodes that throw the shadow, and all under them, by name\nor number (default: all others)")
+            "nodes that cast the shadow, with all below them, by name\nor number (default: all others)")
         ->type_name("NODE");
     verb.add_option("--receivers", options.receivers,
-                    "nodes that it falls on (default: all others); the only\nones whose pixels are compared")
+                    "nodes that the shadow falls on (default: all others);\nonly their pixels are compared")
         ->type_name("NODE");
     add_table(verb, map_table(), options);
     add_table(verb, tree_table(), options.view);

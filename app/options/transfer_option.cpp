@@ -16,13 +16,13 @@ constexpr const char* option = "--transfer";
 // Colours are linear.
 Names<std::string_view> named_points() {
     return {
-        // For volumes that nothing is known of: what is denser than a tenth of the range, ever more opaque.
+        // For any volume: densities above a tenth of the range show, the denser the more opaque.
         {"solid", "0.1:0.75,0.7,0.62:0;0.3:0.75,0.7,0.62:0.5;1:0.95,0.92,0.85:2"},
-        // Scans with contrast for bones: soft parts as a haze.
+        // For scans with contrast for bones: soft parts are a haze.
         {"bone", "0.08:0.5,0.08,0.04:0;0.25:0.6,0.15,0.08:0.015;0.4:0.85,0.7,0.5:0.4;1:1,0.97,0.9:3"},
-        // Everything, thin: brighter where it is denser.
+        // All densities are thin, and brighter the denser they are.
         {"haze", "0.02:0.1,0.25,0.6:0;0.5:0.5,0.6,0.8:0.01;1:1,0.95,0.85:0.06"},
-        // Each density as opaque as it is great.
+        // Extinction is proportional to density.
         {"opaque", "0:0.8,0.75,0.7:0;1:0.8,0.75,0.7:4"},
     };
 }
@@ -68,7 +68,7 @@ TransferChoice parse_transfer(const std::string& text) {
         choice.points.push_back(
             {parse_number(option, parts[0]), {color[0], color[1], color[2]}, parse_number(option, parts[2])});
     }
-    (void)choice.for_voxels(1.0);  // refuses what is out of range
+    (void)choice.for_voxels(1.0);  // throws if a point is out of range
     return choice;
 }
 

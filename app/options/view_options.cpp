@@ -21,9 +21,9 @@ namespace {
 constexpr int max_tree_resolution = 1 << MAX_RESOLUTION_BITS;
 constexpr int max_cache_mib = 1 << 20;
 constexpr int max_copies = 4096;
-/// The finest voxels are 2^-60 of the fractal: at this zoom they still are finer than a pixel.
+/// The finest voxels are 2^-60 of the fractal. At this zoom they are still finer than a pixel.
 constexpr int most_zoom = 46;
-/// Outside, every ray asks for the finest or the coarsest level there is.
+/// Outside this range, every ray asks for the finest or the coarsest level of the tree.
 constexpr double least_pixel_error = 1e-3;
 constexpr double largest_pixel_error = 1e3;
 
@@ -37,7 +37,7 @@ optics::Camera camera_of(const char* option, const std::string& text) {
     if (!std::isfinite(glm::dot(forward, forward))) {
         throw Error(Fault::usage, option, "the eye and the target are too far apart");
     }
-    // Looking straight up or down, +Y is no way up.
+    // +Y cannot be the up direction of a camera that looks straight up or down.
     if (glm::length(glm::cross(glm::normalize(forward), camera.up)) < 1e-6) camera.up = {0.0, 0.0, -1.0};
     if (n.size() == 7) {
         if (n[6] <= 0.0 || n[6] >= 180.0) {
@@ -63,7 +63,7 @@ std::string light_text(const optics::Light& light) {
     return text;
 }
 
-/// What `--shadow` sets at once.
+/// The values of `--shadow`.
 enum class ShadowKind : std::uint8_t { none, hard, soft };
 
 Names<ShadowKind> shadow_names() {
@@ -76,7 +76,7 @@ renderer::ShadowQuality::Kind quality_of(ShadowKind kind) {
     return kind == ShadowKind::soft ? Kind::rays : Kind::hard;
 }
 
-/// What `--shadow` is for a shadow, which may be of cones.
+/// The value of `--shadow` for a shadow, which may be computed by cones.
 ShadowKind shadow_kind(const renderer::ShadowQuality& shadow) {
     using Kind = renderer::ShadowQuality::Kind;
     if (shadow.kind == Kind::none) return ShadowKind::none;
@@ -93,7 +93,7 @@ Names<renderer::LevelOfDetail::Kind> level_of_detail_names() {
     return {{"nearest", Kind::nearest}, {"blended", Kind::blended}};
 }
 
-/// Memory of a cache: MiB on the command line, bytes in the options.
+/// A row of a cache's memory: in MiB on the command line, in bytes in the options.
 template <typename Member>
 OptionRow<ViewOptions> mebibytes_row(const char* name, std::string description, int least, Member member) {
     return {name, "MIB", std::move(description),
@@ -164,7 +164,7 @@ OptionTable<ViewOptions> shadow_table() {
     const Names<ShadowKind> names = shadow_names();
     return {
         {"--shadow", joined(names, "|", "|"),
-         fmt::format("shadows of that light; soft ones take {} rays a pixel\n(default: {{default}})",
+         fmt::format("shadows of that light; soft ones take {} rays per\npixel (default: {{default}})",
                      default_soft_rays),
          [names](ViewOptions& options, const char* option, const std::string& text) {
              options.view.shadow.kind = quality_of(named(option, text, names));
@@ -172,7 +172,7 @@ OptionTable<ViewOptions> shadow_table() {
          [names](const ViewOptions& options) { return name_of(shadow_kind(options.view.shadow), names); }},
         flag_row<ViewOptions>(
             "--cones",
-            "the rays of soft shadows are cones, which read coarser\nvoxels the further "
+            "use cones instead of rays for soft shadows; they read\ncoarser voxels the further "
             "they go",
             [](auto& options) -> auto& { return options.cones; }),
     };
@@ -194,7 +194,7 @@ OptionTable<ViewOptions> tree_table() {
             [](auto& options) -> auto& { return options.pools.cache_bytes; }),
         number_row<ViewOptions>(
             "--pixel-error", "E",
-            "the size of a voxel on the screen, in pixels, that rays\nlook for (default: {default})",
+            "the size of voxels on the screen that rays ask for, in\npixels (default: {default})",
             least_pixel_error, largest_pixel_error,
             [](auto& options) -> auto& { return options.view.detail.pixel_error; }),
     };
@@ -219,13 +219,13 @@ OptionTable<ViewOptions> look_table() {
     return {
         named_row<ViewOptions>(
             "--level-of-detail",
-            "one size of voxels at a time, or two that lead over, so\nthat nothing pops when the camera "
-            "moves; of surfaces\n(default: {default})",
+            "levels of surfaces: the nearest one per pixel, or a blend\nof two, so that nothing pops when "
+            "the camera moves\n(default: {default})",
             level_of_detail_names(), [](auto& options) -> auto& { return options.view.detail.kind; }),
         {"--transfer", "NAME|POINTS",
          fmt::format(
              "what the densities of a volume look like:\n{}; or points\nDENSITY:R,G,B:EXTINCTION with \";\" "
-             "between them, all in\n[0, 1] but the extinction, which is for each voxel\n(default: {})",
+             "between them, all in\n[0, 1] but the extinction, which is per voxel\n(default: {})",
              transfer_names(), default_transfer),
          [](ViewOptions& options, const char*, const std::string& text) {
              options.transfer = parse_transfer(text);
@@ -235,13 +235,13 @@ OptionTable<ViewOptions> look_table() {
              return options.transfer->text;
          }},
         whole_row<ViewOptions>(
-            "--copies", "K", "a volume K times along each axis, side by side (default: {default})", 1,
-            max_copies, [](auto& options) -> auto& { return options.copies; }),
+            "--copies", "K", "copies of a volume per axis, side by side (default:\n{default})", 1, max_copies,
+            [](auto& options) -> auto& { return options.copies; }),
         steps_row<ViewOptions>([](auto& options) -> auto& { return options.steps_per_voxel; }),
         gradient_row<ViewOptions>([](auto& options) -> auto& { return options.gradient_threshold; }),
         named_row<ViewOptions>(
             "--show",
-            "the scene, or what its voxels are: their level in the\ntree, or the lines "
+            "the scene, the level of each voxel in the tree, or the\nlines "
             "between bricks (default: {default})",
             show_names(), [](auto& options) -> auto& { return options.view.show; }),
     };
@@ -250,7 +250,7 @@ OptionTable<ViewOptions> look_table() {
 OptionTable<ViewOptions> zoom_table() {
     return {whole_row<ViewOptions>(
         "--zoom", "K",
-        fmt::format("of builtin:fractal alone, a set without a finest detail:\nlook 2^K times closer, "
+        fmt::format("for builtin:fractal alone, a set without a finest detail:\nlook 2^K times closer, "
                     "0 to {} (default: {{default}})",
                     most_zoom),
         0, most_zoom, [](auto& options) -> auto& { return options.zoom; })};
@@ -267,7 +267,7 @@ renderer::ShadowQuality shadow_of(const ViewOptions& options) {
     using Kind = renderer::ShadowQuality::Kind;
     renderer::ShadowQuality shadow = options.view.shadow;
     if (!options.cones || shadow.kind == Kind::none) return shadow;
-    // One cone sees all of the light, where one ray goes to its middle.
+    // A single cone sees the whole light; a single ray goes to its middle.
     if (shadow.kind == Kind::hard) shadow.samples = 1;
     shadow.kind = Kind::cones;
     return shadow;

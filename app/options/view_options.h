@@ -13,66 +13,68 @@
 #include "renderer/view/view.h"
 #include "scenes/snapshot.h"
 
-/// What `cairn render` and `cairn view` have in common: from where to look, at what, through which tree.
+/// Options that `cairn render` and `cairn view` have in common: camera, light, tree, and what is shown.
 namespace cairn::app {
 
-constexpr int default_soft_rays = 64;  ///< per pixel
+constexpr int default_soft_rays = 64;  ///< rays per pixel
 
 struct ViewOptions {
-    /// Its camera and its light count only if they were given, and its shadow is that without `cones`.
+    /// The camera and the light of the view count only if they were given. Its shadow leaves out `cones`.
     renderer::View view;
-    /// The rays of soft shadows are cones.
+    /// Soft shadows are computed by cones and not by rays.
     bool cones = false;
-    /// Of the tree; none: what suits the scene.
+    /// Shape and resolution of the tree; none: what suits the scene.
     std::optional<int> tree_n, brick_m, max_resolution;
     renderer::PoolSizes pools;
     renderer::MarchOptions march;
-    /// Of a frame; none: until nothing is missing.
+    /// Milliseconds for a frame; none: until nothing is missing.
     std::optional<double> frame_budget_ms;
     bool camera_given = false;
     bool light_given = false;
-    std::optional<TransferChoice> transfer;  ///< of a volume
-    int copies = 1;                          ///< of a volume, along each axis
-    std::optional<int> steps_per_voxel;      ///< of rays through a volume
-    /// Of a volume, in densities per voxel.
+    std::optional<TransferChoice> transfer;  ///< transfer function of a volume
+    int copies = 1;                          ///< copies of a volume per axis
+    std::optional<int> steps_per_voxel;      ///< steps of a ray per voxel of a volume
+    /// Gradient of a volume from which on it is lit as a surface, in densities per voxel.
     std::optional<double> gradient_threshold;
-    int zoom = 0;  ///< of builtin:fractal, a power of two
+    int zoom = 0;  ///< log2 of the zoom into builtin:fractal
 };
 
-/// The picture, its camera and its light.
+/// Options of the picture, its camera and its light.
 [[nodiscard]] OptionTable<ViewOptions> camera_table();
-/// Shadows of that light.
+/// Options of the shadows.
 [[nodiscard]] OptionTable<ViewOptions> shadow_table();
-/// The size of voxels, and their caches.
+/// Options of the size of voxels, and of their caches.
 [[nodiscard]] OptionTable<ViewOptions> tree_table();
-/// The shape of the tree, and how rays go through it.
+/// Options of the shape of the tree, and of how rays go through it.
 [[nodiscard]] OptionTable<ViewOptions> march_table();
-/// How a frame asks for tiles and how long it may take, for `cairn render` alone.
+/// Options of `cairn render` alone: how a frame asks for tiles, and how long it may take.
 [[nodiscard]] OptionTable<ViewOptions> frame_table();
-/// What is shown of the voxels, and how.
+/// Options of what is shown of the voxels, and how.
 [[nodiscard]] OptionTable<ViewOptions> look_table();
-/// `--zoom`, for `cairn render` alone.
+/// The option `--zoom`, of `cairn render` alone.
 [[nodiscard]] OptionTable<ViewOptions> zoom_table();
 
-/// The options that `cairn render` and `cairn view` share: the tables above but the two for `cairn render`.
+/// The options that `cairn render` and `cairn view` share: all tables above except frame_table() and
+/// zoom_table().
 [[nodiscard]] OptionTable<ViewOptions> view_table();
 
-/// The shadow of the options, cones or not.
+/// The shadow that the options ask for, `cones` included.
 [[nodiscard]] renderer::ShadowQuality shadow_of(const ViewOptions& options);
 
-/// The view of the options, with the scene's own light and a camera that sees the whole scene where none was
-/// given. @throws Error as renderer::check_view() does.
+/// The view that the options ask for. If no light was given, it has the light of the scene; if no camera was
+/// given, one that sees the whole scene.
+/// @throws Error as renderer::check_view() does.
 [[nodiscard]] renderer::View view_of(const ViewOptions& options, const scenes::Snapshot& snapshot);
 
-/// What `--camera` is to be given for this camera: for a snapped one it means the same, bit for bit. Its up
-/// direction must be the one that `--camera` chooses.
+/// The text for `--camera` that means this camera. For a snapped camera it does so bit for bit. The camera's
+/// up direction must be the one that `--camera` chooses.
 [[nodiscard]] std::string camera_text(const optics::Camera& camera);
 
-/// The nearest camera that `--camera` can tell.
+/// The nearest camera that the text of `--camera` can express.
 [[nodiscard]] optics::Camera snapped(const optics::Camera& camera);
 
-/// A line for the shell that makes this picture again: the scene, the moment and the tree of the options, and
-/// the view, whose camera is a snapped one. Options that have their default value are left out.
+/// A line for the shell that renders this picture again: with the scene, the moment and the tree of the
+/// options, and with the view, whose camera must be a snapped one. Options with default values are left out.
 [[nodiscard]] std::string render_command(const SceneOptions& scene, const ViewOptions& options,
                                          const renderer::View& view, const std::filesystem::path& output);
 

@@ -10,13 +10,13 @@
 #include "renderer/produce/transfer_function.h"
 #include "shaders/interop/volume.h"
 
-/// Rows of the options that say how voxels are rendered, for every verb that has them. `member` takes the
-/// options and gives back the value in them, as in option_table.h.
+/// Rows of the options that say how voxels are rendered, for every verb that has them. `member` is
+/// as in option_table.h.
 namespace cairn::app {
 
 constexpr int least_brick = 8;
 constexpr int largest_brick = 81;
-constexpr double most_budget_ms = 86.4e6;  ///< a day
+constexpr double most_budget_ms = 86.4e6;  ///< milliseconds of a day
 
 [[nodiscard]] inline Names<renderer::Traversal> traversal_names() {
     using renderer::Traversal;
@@ -56,11 +56,10 @@ template <typename Options, typename Member>
 }
 template <typename Options, typename Member>
 [[nodiscard]] OptionRow<Options> steps_row(Member member) {
-    return whole_row<Options>(
-        "--steps-per-voxel", "N",
-        fmt::format("steps of a ray through a voxel of a volume, 1 to {}\n(default: {})", VOLUME_MOST_STEPS,
-                    renderer::VolumeOptions{}.steps_per_voxel),
-        1, VOLUME_MOST_STEPS, member);
+    return whole_row<Options>("--steps-per-voxel", "N",
+                              fmt::format("steps of a ray per voxel of a volume, 1 to {}\n(default: {})",
+                                          VOLUME_MOST_STEPS, renderer::VolumeOptions{}.steps_per_voxel),
+                              1, VOLUME_MOST_STEPS, member);
 }
 template <typename Options, typename Member>
 [[nodiscard]] OptionRow<Options> gradient_row(Member member) {

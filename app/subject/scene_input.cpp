@@ -14,7 +14,7 @@
 namespace cairn::app {
 namespace {
 
-/// A name wins over an index, so that an animation called "1" can be reached.
+/// Names come before indices, so that an animation called "1" can be chosen.
 int animation_called(const scenes::Scene& scene, const std::string& name) {
     std::string known;
     for (std::size_t i = 0; i < scene.animations.size(); ++i) {

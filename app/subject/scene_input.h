@@ -6,18 +6,18 @@
 
 namespace cairn::app {
 
-/// A scene and what stands where at the moment that was asked for. The snapshot points into the scene.
+/// A scene, and its snapshot at the moment that was asked for. The snapshot points into the scene.
 struct SceneInput {
     scenes::Scene scene;
     scenes::Snapshot snapshot;
-    scenes::When when;  ///< of the snapshot
+    scenes::When when;  ///< moment of the snapshot
 };
 
-/// Loads, and warns on stderr unless `quiet`.
-/// @throws Error  Fault::input, or Fault::usage when there is no such animation or scene.
+/// Loads a scene. Prints warnings on stderr unless `quiet`.
+/// @throws Error  Fault::input if the file is bad; Fault::usage if there is no such animation or scene.
 [[nodiscard]] SceneInput load_input(const SceneOptions& options, bool quiet);
 
-/// Adds a plane (scenes/ground.h) under all that the animation moves.
+/// Adds a plane (scenes/ground.h) under the scene and all places that its animation moves it to.
 void add_ground(SceneInput& input);
 
 }  // namespace cairn::app

@@ -20,7 +20,7 @@ using renderer::ContentKind;
     throw Error(Fault::usage, option, what, way_out);
 }
 
-/// An option of one kind of content is no option of another kind.
+/// @throws Error (Fault::usage) if an option does not apply to the kind of content.
 void check_kind(ContentKind kind, const SceneOptions& scene, const ViewOptions& options) {
     if (options.zoom != 0 && kind != ContentKind::fractal)
         refuse("--zoom", "this scene has a finest level", "use --camera, or builtin:fractal");

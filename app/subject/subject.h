@@ -9,27 +9,27 @@
 
 namespace cairn::app {
 
-/// What the options ask renderer::ContentSource for, but for a scene's moment.
-/// @throws Error (Fault::usage) for an option that the kind of content does not know.
+/// The options of renderer::ContentSource that the command's options mean, all but the moment of a scene.
+/// @throws Error (Fault::usage) if an option does not apply to the kind of content.
 [[nodiscard]] renderer::ContentOptions content_options(const SceneOptions& scene, const ViewOptions& options);
 
 /// What a verb shows: a scene at a moment, a volume, or one of the built-in sets.
 class Subject {
 public:
-    /// Loads, and warns on stderr unless `quiet`.
-    /// @throws Error as load_input() and renderer::ContentSource do, and Fault::usage for an option that the
-    /// kind of content does not know.
+    /// Loads the content. Prints warnings on stderr unless `quiet`.
+    /// @throws Error as load_input() and renderer::ContentSource do; Fault::usage if an option does not apply
+    /// to the kind of content.
     Subject(const SceneOptions& scene, const ViewOptions& options, bool quiet);
 
     [[nodiscard]] const scenes::Bounds& bounds() const { return source_.bounds(); }
     [[nodiscard]] const renderer::TreeOptions& tree() const { return source_.tree(); }
     [[nodiscard]] renderer::ContentKind kind() const { return source_.kind(); }
-    /// How much there is of it.
+    /// Adds the number of triangles or voxels to the report.
     void add_figures(Report& report) const;
-    /// The view of the options; @see view_of(). In the fractal, the camera and the light are given from its
+    /// The view that the options ask for; @see view_of(). Camera and light of the fractal are relative to its
     /// middle, in units of its side / 2^zoom.
     [[nodiscard]] renderer::View view(const ViewOptions& options) const;
-    /// Needs a context.
+    /// The content for a renderer. Needs a current context.
     [[nodiscard]] std::unique_ptr<renderer::Content> content(const gl::ShaderSource& shaders) const {
         return source_.content(shaders);
     }

@@ -8,23 +8,22 @@
 
 namespace cairn::app {
 
-/// KHR_debug is to listen: in debug builds, and where the environment holds CAIRN_GL_DEBUG.
+/// Whether KHR_debug is to be on: in debug builds, and if the environment holds CAIRN_GL_DEBUG.
 [[nodiscard]] bool wants_debugging();
 
-/// @throws Error (Fault::context) when KHR_debug heard of an error or of undefined behaviour: a bug of ours.
+/// @throws Error (Fault::context) if KHR_debug has reported an error or undefined behaviour: a bug of Cairn.
 void check_debug_log(gl::Context& context);
 
-/// The OpenGL context of a verb. In debug builds, and where the environment holds CAIRN_GL_DEBUG, KHR_debug
-/// listens.
+/// The OpenGL context of a verb, with KHR_debug if wants_debugging().
 class Driver {
 public:
-    /// @throws Error (Fault::context)
+    /// @throws Error (Fault::context) if there is no usable OpenGL 4.5.
     explicit Driver(const DriverOptions& options);
 
-    [[nodiscard]] std::string name() const;     ///< "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 ..."
+    /// For instance "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5 ...".
+    [[nodiscard]] std::string name() const;
     [[nodiscard]] std::string backend() const;  ///< "osmesa" or "egl"
-    /// @throws Error (Fault::context) when KHR_debug heard of an error or of undefined behaviour: a bug of
-    /// ours.
+    /// @throws Error as check_debug_log() does.
     void check() const;
 
 private:

@@ -4,16 +4,18 @@
 
 namespace cairn::app {
 
-/// What the process answers to the shell; README.md lists them.
+/// Exit codes of the process; docs/manual/README.md lists them.
 enum class ExitCode : int {
     done = 0,
-    differs = 1,        ///< a comparison found a difference
-    usage = 2,          ///< wrong usage, or an output that cannot be written
-    input = 3,          ///< a bad input file
-    context = 4,        ///< no usable OpenGL 4.5
-    memory = 5,         ///< it does not fit
-    interrupted = 130,  ///< stopped by Ctrl-C or SIGTERM, as shells count it (128 + SIGINT)
-    internal = 70,      ///< a fault of cairn itself (EX_SOFTWARE of sysexits.h); never expected
+    differs = 1,  ///< a comparison found a difference
+    usage = 2,    ///< wrong usage, or an output that cannot be written
+    input = 3,    ///< a bad input file
+    context = 4,  ///< no usable OpenGL 4.5
+    memory = 5,   ///< not enough memory
+    /// Stopped by Ctrl-C or SIGTERM: 128 + SIGINT, as shells count it.
+    interrupted = 130,
+    /// A fault of cairn itself (EX_SOFTWARE of sysexits.h); never expected.
+    internal = 70,
 };
 
 [[nodiscard]] constexpr ExitCode exit_code(Fault fault) {

@@ -20,7 +20,7 @@ Interrupt::Interrupt() {
     action.sa_handler = ask_to_stop;
     action.sa_flags = SA_RESETHAND | SA_RESTART;
     for (const int signal : signals) {
-        // One that the parent has told us to ignore (nohup, a shell's background job) stays ignored.
+        // A signal that the parent process ignores (nohup, a shell's background job) stays ignored.
         struct sigaction before {};
         sigaction(signal, nullptr, &before);
         if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);

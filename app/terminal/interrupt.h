@@ -2,8 +2,8 @@
 
 namespace cairn::app {
 
-/// While one lives, the first Ctrl-C (SIGINT) or SIGTERM asks the work to stop, so that nothing half written
-/// stays behind; a second one ends the process as ever.
+/// While an object lives, the first Ctrl-C (SIGINT) or SIGTERM sets asked(), so that the work can stop and
+/// leave nothing half written. A second one ends the process as usual.
 class Interrupt {
 public:
     Interrupt();

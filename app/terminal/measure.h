@@ -1,27 +1,28 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <utility>
 
 #include <sys/resource.h>
 
+#include "base/clock.h"
+
 namespace cairn::app {
 
-/// Time on the wall since it was made, or since the last `lap_ms()`.
+/// Measures wall-clock time.
 class Stopwatch {
 public:
+    /// Milliseconds since the construction, or since the last call.
     [[nodiscard]] double lap_ms() {
         const Clock::time_point now = Clock::now();
-        return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+        return milliseconds(now - std::exchange(start_, now));
     }
 
 private:
-    using Clock = std::chrono::steady_clock;
     Clock::time_point start_ = Clock::now();
 };
 
-/// The most memory that this process has held at once.
+/// The most memory that this process has held at once, in bytes.
 [[nodiscard]] inline std::uint64_t peak_rss_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

@@ -6,7 +6,7 @@
 namespace cairn::app {
 namespace {
 
-/// What the libraries' error texts name, and the option that sets it, or the verb that does it.
+/// Names in the error texts of the libraries, each with the option that sets it or the verb that does it.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 6> option_names = {
     {{"ContextOptions::kind", "--context"},
      {"LoadOptions::trust_paths", "--trust-paths"},

@@ -5,8 +5,8 @@
 
 namespace cairn::app {
 
-/// The text of a library with the options of the command in the place of the library's own names:
-/// "choose another ContextOptions::kind" becomes "choose another --context". Libraries know no command line.
+/// Replaces names of a library in one of its texts by options of the command:
+/// "choose another ContextOptions::kind" becomes "choose another --context".
 [[nodiscard]] std::string with_option_names(std::string_view text);
 
 }  // namespace cairn::app

@@ -26,7 +26,7 @@ void write_png(const optics::Image& image, const std::filesystem::path& path) {
     };
     if (stbi_write_png_to_func(append, &file, image.width, image.height, channels, rgb.data(),
                                image.width * channels) == 0) {
-        throw std::bad_alloc();  // the only failure that it has
+        throw std::bad_alloc();  // stb_image_write has no other failure
     }
     file.commit();
 }

@@ -6,8 +6,8 @@
 
 namespace cairn::app {
 
-/// Writes an 8-bit sRGB PNG. Its alpha is left out: the background is blended in already.
-/// @throws Error when the file cannot be written.
+/// Writes an 8-bit sRGB PNG without alpha: the background is blended in already.
+/// @throws Error if the file cannot be written.
 void write_png(const optics::Image& image, const std::filesystem::path& path);
 
 }  // namespace cairn::app

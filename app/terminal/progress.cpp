@@ -8,10 +8,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/clock.h"
+
 namespace cairn::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr auto patience = std::chrono::seconds(1);
 constexpr auto redraw_every = std::chrono::milliseconds(200);
 constexpr int bar_width = 40;

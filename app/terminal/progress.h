@@ -8,8 +8,8 @@
 
 namespace cairn::app {
 
-/// Tells on stderr that work goes on, once it has lasted over a second: a bar when the share done is known,
-/// else the seconds. Only on a terminal; the line is wiped when this is destroyed.
+/// Shows on stderr that work goes on, once it has lasted for over a second: as a bar if the share done is
+/// known, else as seconds. Only on a terminal. The destructor wipes the line.
 class Progress {
 public:
     Progress(std::string what, bool quiet);
@@ -26,7 +26,7 @@ private:
     void draw_until_done();
 
     std::string what_;
-    std::atomic<double> share_{-1.0};  // negative: not known
+    std::atomic<double> share_{-1.0};  // negative if not known
     std::mutex mutex_;
     std::condition_variable wake_;
     bool done_ = false;

@@ -63,7 +63,7 @@ std::string as_text(const Json& figures) {
         std::string label = label_of(key);
         for (const Json& line : is_list_of_objects(value) ? value : Json::array({value})) {
             text += fmt::format("{:<{}}{}\n", label, label_width, text_of(key, line));
-            label.clear();  // only the first line of a list is named
+            label.clear();  // only the first line of a list has a label
         }
     }
     return text;
@@ -78,7 +78,7 @@ void print(const std::string& text) {
 }  // namespace
 
 void Report::finish() const {
-    // Names come from files: what is not UTF-8 in them is replaced, not thrown at the user.
+    // Names come from files: bytes that are not UTF-8 are replaced, because dump() would throw.
     const std::string json = figures_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     if (options_.json == "-") {
         print(json);

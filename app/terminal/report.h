@@ -11,17 +11,18 @@ namespace cairn::app {
 
 using Json = nlohmann::ordered_json;
 
-/// The figures of one run, each given once: the text on stdout and the JSON are made of the same entries, so
-/// that the one cannot show what the other hides.
+/// The figures of one run. The text on stdout and the JSON are made of the same entries, so that neither
+/// shows what the other hides.
 ///
-/// The end of a key tells its unit: `..._ms` milliseconds, `..._bytes` bytes (shown as MiB in the text).
+/// The end of a key is its unit: `..._ms` milliseconds, `..._bytes` bytes (shown as MiB in the text).
 class Report {
 public:
     explicit Report(const ReportOptions& options) : options_(options) {}
 
     void add(const std::string& key, Json value) { figures_[key] = std::move(value); }
 
-    /// Prints the text and writes the JSON. @throws Error (Fault::usage) when either cannot be written.
+    /// Prints the text and writes the JSON.
+    /// @throws Error (Fault::usage) if either cannot be written.
     void finish() const;
 
 private:
@@ -29,7 +30,7 @@ private:
     Json figures_ = Json::object();
 };
 
-/// [x, y, z] of a glm vector.
+/// A glm vector as [x, y, z].
 template <typename Vector>
 [[nodiscard]] Json json_of(const Vector& v) {
     Json array = Json::array();

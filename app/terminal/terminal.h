@@ -12,13 +12,13 @@ namespace cairn::app {
 /// drive the user's terminal.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// "warning: WHAT" on stderr.
+/// Prints "warning: WHAT" on stderr.
 void warn(std::string_view what);
 
-/// "error: WHERE: WHAT" on stderr, and the way out on an indented second line.
+/// Prints "error: WHERE: WHAT" on stderr, and the way out on an indented second line.
 void print_error(std::string_view what, std::string_view way_out = {});
 
-/// Prints the error that is being handled. @return the exit code that it asks for.
+/// Prints the exception that is being handled. @return its exit code.
 [[nodiscard]] ExitCode report_current_exception();
 
 }  // namespace cairn::app

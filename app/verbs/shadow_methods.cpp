@@ -16,7 +16,7 @@ namespace {
 
 constexpr float embree_albedo = 0.8F;
 
-/// Grey, shaded as the renderer shades: by the light's middle.
+/// A grey picture, shaded by the light's middle, as the renderer shades.
 optics::Image lit_image(const ShadowTask& task, const reference::ShadowReceivers& receivers,
                         const std::vector<float>& shares) {
     const reference::ReferenceImage& seen = receivers.seen;
@@ -44,7 +44,7 @@ optics::Image lit_image(const ShadowTask& task, const reference::ShadowReceivers
 
 ShadowResult shadow_on_gpu(renderer::ShadowMethod method, const ShadowTask& task,
                            const ShadowOptions& options) {
-    // Rays meet all that is shown; maps tell who throws a shadow and who takes it.
+    // Rays meet all that is shown; soft shadow maps keep occluders and receivers apart.
     renderer::ShadowScene scene{task.input.scene, task.shown};
     if (method == renderer::ShadowMethod::soft_shadow_map) {
         scene.casters = task.occluders;

@@ -35,7 +35,7 @@ void check_shadow_options(const ShadowOptions& options) {
     if (options.cones && *options.method != ShadowMethod::voxel)
         refuse("--cones", "only voxels are seen by cones", "leave it out, or choose --method voxel");
     if (is_map && options.occluders.empty() && options.receivers.empty())
-        refuse("--method", "soft shadow maps know no self-shadowing", "name --occluders or --receivers");
+        refuse("--method", "soft shadow maps have no self-shadowing", "name --occluders or --receivers");
     if (options.difference && !options.compare)
         refuse("--difference", "nothing is compared", "add --compare embree");
 }

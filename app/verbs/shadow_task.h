@@ -12,15 +12,17 @@ namespace cairn::app {
 struct ShadowTask {
     SceneInput input;
     scenes::NodeSelection occluders, receivers;
-    scenes::Snapshot shown;  ///< of occluders and receivers
+    scenes::Snapshot shown;  ///< occluders and receivers
     renderer::View view;
 };
 
-/// Voxels per side of the tree, and of the pyramid: --max-resolution if it was given.
+/// Voxels per side of the tree or of the pyramid: --max-resolution if it was given, else the default.
 [[nodiscard]] int tree_resolution(const ShadowOptions& options);
 [[nodiscard]] int pyramid_resolution(const ShadowOptions& options);
 
-/// @throws Error (Fault::usage) when the options contradict each other; before anything is written.
+/// Loads the scene and chooses nodes, light and view.
+/// @throws Error (Fault::usage) if the options contradict each other, before anything is written; as
+/// load_input() does.
 [[nodiscard]] ShadowTask make_shadow_task(const ShadowOptions& options);
 
 }  // namespace cairn::app

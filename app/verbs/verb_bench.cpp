@@ -50,7 +50,7 @@ std::vector<int> sizes_of(const std::string& text) {
     return sizes;
 }
 
-/// The options of voxels, each with whether a chart takes it.
+/// An option of voxels, and the member that says whether a chart takes it.
 struct VoxelRow {
     OptionRow<bench::VoxelOptions> row;
     bool bench::VoxelOptionsTaken::*taken;
@@ -72,7 +72,7 @@ std::vector<VoxelRow> voxel_rows() {
     };
 }
 
-/// @throws Error (Fault::usage) for an option that the chart varies itself, or that says nothing to it.
+/// @throws Error (Fault::usage) if an option was given that the chart does not take.
 void check_voxel_options(const bench::ChartKind& kind, const bench::VoxelOptions& voxels) {
     for (const VoxelRow& option : voxel_rows()) {
         if (!option.row.print(voxels) || kind.takes.*option.taken) continue;
@@ -82,7 +82,7 @@ void check_voxel_options(const bench::ChartKind& kind, const bench::VoxelOptions
     }
 }
 
-/// What was given, with the options' names as the keys.
+/// The options that were given, with their names as the keys.
 Json json_of_voxel_options(const bench::VoxelOptions& voxels) {
     Json given = Json::object();
     for (const VoxelRow& option : voxel_rows())
@@ -98,23 +98,24 @@ void add_options(CLI::App& verb, Options& options) {
     verb.add_option("-o,--output", options.what.folder,
                     "the folder for the CSV and the picture (default: this one)")
         ->type_name("DIR");
-    add_parsed_option(verb, "--scenes", "DIR", "where the real scenes lie (stanford_bunny_69k.glb)",
+    add_parsed_option(verb, "--scenes", "DIR", "the folder of the real scenes (stanford_bunny_69k.glb)",
                       [&options](const std::string& text) {
                           if (!std::filesystem::is_directory(text))
                               throw Error(Fault::usage, "--scenes", "\"" + text + "\" is not a folder");
                           options.what.scene_folder = text;
                       });
-    verb.add_option("--scene", options.what.scenes, "only this scene; may be given again")
+    verb.add_option("--scene", options.what.scenes,
+                    "a scene to measure instead of the chart's own; may be\nrepeated")
         ->type_name("SCENE")
         ->allow_extra_args(false);
-    add_parsed_option(verb, "--resolutions", "N,...", "voxels a side, or pixels (default: the chart's own)",
+    add_parsed_option(verb, "--resolutions", "N,...", "voxels per side, or pixels (default: the chart's own)",
                       [&options](const std::string& text) { options.what.resolutions = sizes_of(text); });
     add_parsed_option(
-        verb, "--runs", "N", "medians are of so many runs, or fewer if slow (default: 7)",
+        verb, "--runs", "N", "runs per median; fewer if they are slow (default: 7)",
         [&options](const std::string& text) { options.what.runs = parse_int("--runs", text, 1, max_runs); });
     verb.add_option_function<std::string>(
             "--truth-cache", [&options](const std::string& text) { options.what.truth_cache = text; },
-            "keeps what Embree found of soft lights in this folder,\nand takes it from there")
+            "a folder that keeps Embree's shares of soft lights, for\nthe next run")
         ->type_name("DIR");
     OptionTable<bench::VoxelOptions> voxels;
     for (const VoxelRow& option : voxel_rows())
@@ -135,7 +136,7 @@ Json json_of_table(const bench::Table& table) {
     for (const std::vector<bench::Cell>& row : table.rows) {
         Json object = Json::object();
         for (std::size_t i = 0; i < row.size(); ++i) {
-            // The driver is the same everywhere, and told once.
+            // The driver is the same for all rows, and reported once.
             const std::string& column = table.columns[i];
             if (column == "driver" || column == "threads" || row[i].index() == 0) continue;
             object[column == "ms" ? "milliseconds" : column] = json_of_cell(row[i]);

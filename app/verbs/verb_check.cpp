@@ -15,8 +15,8 @@
 namespace cairn::app {
 namespace {
 
-/// Compares tiles with the truth as they come, in the order of VoxelWriter; those that do not come must be
-/// empty in the truth too.
+/// Compares tiles with the truth as they arrive, in the order of VoxelWriter. Tiles that do not arrive must
+/// be empty in the truth too.
 class TileComparison {
 public:
     TileComparison(const voxelizer::Surface& surface, const voxelizer::Grid& grid, bool quiet)

@@ -31,8 +31,8 @@ struct Options {
     CommonOptions common;
     std::optional<std::filesystem::path> output;
     ViewOptions view;
-    std::optional<std::string> mesh;   ///< a scene that is drawn as triangles
-    std::optional<std::string> proxy;  ///< a scene whose faces bound the rays
+    std::optional<std::string> mesh;   ///< scene that is drawn as triangles
+    std::optional<std::string> proxy;  ///< scene whose faces bound the rays
     bool mesh_shadows = false;
 };
 
@@ -46,14 +46,14 @@ void add_options(CLI::App& verb, Options& options) {
     verb.add_flag("--mesh-shadows", options.mesh_shadows, "let the voxels cast shadows on those triangles")
         ->needs("--mesh");
     verb.add_option("--proxy", options.proxy,
-                    "a closed mesh: only what lies inside it is shown of the\nvoxels")
+                    "a scene that is a closed mesh: only voxels inside it are\nshown")
         ->type_name("SCENE");
     add_table(verb, frame_table(), options.view);
     add_table(verb, zoom_table(), options.view);
     add_common_options(verb, options.common);
 }
 
-/// Converged frames, which find the bricks of the frame before.
+/// Repeated frames of one view, whose bricks are there already.
 struct Repeated {
     double median_ms = 0.0;
     renderer::FrameStatistics last;
@@ -77,7 +77,7 @@ Repeated repeat(renderer::Renderer& renderer, const renderer::View& view, const 
     return repeated;
 }
 
-/// How the picture was made, where the counters do not say it.
+/// Adds how the picture was made, as far as the counters do not say it.
 void add_settings(const Subject& subject, const ViewOptions& options, Report& report) {
     report.add("tree_n", subject.tree().n);
     report.add("brick_m", subject.tree().m);
@@ -107,7 +107,7 @@ void add_counters(const renderer::FrameStatistics& first, const renderer::FrameS
     report.add("brick_cache_bytes", first.brick_cache_bytes);
 }
 
-/// Another scene as triangles: in its rest pose, unless it is the one that is voxelized.
+/// A scene as triangles: in its rest pose, unless it is the one that is voxelized.
 std::shared_ptr<renderer::MeshRaster> load_mesh(const std::string& scene, const Options& options) {
     SceneOptions input = options.common.scene;
     if (scene != input.scene) {
@@ -150,7 +150,7 @@ ExitCode run(const Options& options) {
                                 {options.view.pools, options.view.march}, options.common.driver.shaders);
     renderer.set_mix(load_mix(options, report));
     add_settings(*subject, options.view, report);
-    subject.reset();  // the renderer has its own copy of what it needs: do not pay twice
+    subject.reset();  // the renderer has copies of all that it needs
     report.add("setup_ms", watch.lap_ms());
 
     renderer::Request request;
@@ -158,16 +158,16 @@ ExitCode run(const Options& options) {
     renderer::Frame first;
     {
         Progress progress("rendering", quiet);
-        renderer::Request told = request;
-        told.progress = [&progress](double share) { progress.set(share); };
-        first = renderer.render(view, told);
+        renderer::Request watched = request;
+        watched.progress = [&progress](double share) { progress.set(share); };
+        first = renderer.render(view, watched);
     }
     report.add("first_frame_ms", first.statistics.milliseconds);
     (void)watch.lap_ms();
     write_png(first.image, output);
     const double write_ms = watch.lap_ms();
     renderer::FrameStatistics last = first.statistics;
-    // Frames that nobody asked about are not worth their time.
+    // Without a report, frames are not repeated to measure them.
     if (!quiet || options.common.report.json) {
         const Repeated repeated = repeat(renderer, view, request, quiet);
         report.add("frame_ms", repeated.median_ms);

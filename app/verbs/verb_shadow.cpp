@@ -17,7 +17,7 @@
 namespace cairn::app {
 namespace {
 
-/// None: Embree, which needs no OpenGL.
+/// The renderer's method; none for Embree, which needs no OpenGL.
 std::optional<renderer::ShadowMethod> gpu_method(ShadowMethod method) {
     switch (method) {
         case ShadowMethod::voxel:
@@ -100,7 +100,7 @@ ExitCode run(const ShadowOptions& options) {
 
 void add_shadow(CLI::App& command, Work& chosen) {
     add_verb<ShadowOptions>(command, chosen, "shadow",
-                            "Compute a shadow in one of several ways, and tell its error", add_shadow_options,
+                            "Compute a shadow by one of several methods, and its error", add_shadow_options,
                             run);
 }
 

@@ -32,7 +32,7 @@ namespace cairn::app {
 namespace {
 
 constexpr int max_frames = 1 << 30;
-/// Nothing happens without an event; the limit only guards against one that a window system drops.
+/// Longest wait for an event, in seconds, in case the window system drops one.
 constexpr double longest_wait = 5.0;
 
 struct Options {
@@ -47,16 +47,17 @@ struct Options {
 };
 
 void add_options(CLI::App& verb, Options& options) {
-    add_output_option(verb, options.output, {".png"},
-                      "what the key P writes (default: the first of cairn-1.png,\ncairn-2.png, ... that is "
-                      "free)");
+    add_output_option(
+        verb, options.output, {".png"},
+        "the file that the key P writes (default: the first of\ncairn-1.png, cairn-2.png, ... that "
+        "does not exist)");
     add_table(verb, view_table(), options.view);
     add_parsed_option(
         verb, "--frames", "N",
-        "leave once N frames have been shown and nothing is left\nto refine (default: with the "
+        "end once N frames have been shown and nothing is left to\nrefine (default: at the "
         "key Escape)",
         [&options](const std::string& text) { options.frames = parse_int("--frames", text, 1, max_frames); });
-    verb.add_flag("--log", options.log, "tell on stderr of each converged view and each picture");
+    verb.add_flag("--log", options.log, "report each converged view and each picture on stderr");
     add_scene_argument(verb, options.scene);
     add_moment_options(verb, options.scene);
     add_shader_option(verb, options.driver);
@@ -86,7 +87,7 @@ double longest(const std::vector<double>& times) {
     return times.empty() ? 0.0 : *std::max_element(times.begin(), times.end());
 }
 
-/// The window, and all that it shows and does until it is closed.
+/// The window, from its opening to its closing.
 class Explorer {
 public:
     Explorer(const Options& options, gl::Window& window, Viewer& viewer)
@@ -134,7 +135,7 @@ private:
 
     void draw() {
         const glm::ivec2 size = window_.framebuffer_size();
-        if (size.x < 1 || size.y < 1) return;  // out of sight
+        if (size.x < 1 || size.y < 1) return;  // minimized
         glViewport(0, 0, size.x, size.y);
         canvas_.draw(viewer_.base(), viewer_.base_revision(), size);
         canvas_.draw(viewer_.growing(), viewer_.growing_revision(), size);
@@ -155,7 +156,7 @@ private:
         return text;
     }
 
-    /// Writes a picture that has come to its end, and says how to make it again.
+    /// Writes a finished picture, and reports the command that renders it again.
     void keep_picture() {
         const std::optional<TakenPicture> taken = viewer_.take_picture();
         if (!taken) return;
@@ -225,7 +226,7 @@ ExitCode run(const Options& options) {
         renderer.emplace(subject->content(options.driver.shaders),
                          renderer::RendererOptions{options.view.pools, options.view.march},
                          options.driver.shaders);
-        subject.reset();  // the renderer has its own copy of what it needs
+        subject.reset();  // the renderer has copies of all that it needs
         viewer.emplace(*renderer, view, size);
         viewer->warm_up();
     }

@@ -32,13 +32,14 @@ struct Options {
 };
 
 void add_options(CLI::App& verb, Options& options) {
-    add_output_option(verb, options.output, voxelizer::voxel_file_endings(),
-                      fmt::format("write the voxels, as the ending says:\n{};\n.npy holds uint8 of shape "
-                                  "(X, Y, Z), a[x, y, z],\n1 = occupied",
-                                  fmt::join(voxelizer::voxel_file_endings(), ", ")));
+    add_output_option(
+        verb, options.output, voxelizer::voxel_file_endings(),
+        fmt::format("the file for the voxels; its ending is the format:\n{};\n.npy holds uint8 of shape "
+                    "(X, Y, Z), a[x, y, z],\n1 = occupied",
+                    fmt::join(voxelizer::voxel_file_endings(), ", ")));
     add_parsed_option(verb, "--fill", "NAME",
-                      "surface: only voxels that the surface touches (default);\nsolid: what closed parts "
-                      "enclose, too",
+                      "surface: only voxels that the surface touches (default);\nsolid: also the insides "
+                      "of closed parts",
                       [&options](const std::string& name) {
                           const Names<bool> names = {{"surface", false}, {"solid", true}};
                           options.solid = named("--fill", name, names);
@@ -47,7 +48,8 @@ void add_options(CLI::App& verb, Options& options) {
     add_voxelization_options(verb, options.voxelization);
 }
 
-/// A .npy holds every voxel, empty or not: whether it can be is known before any work.
+/// Checks before any work that there is room for a .npy file, which holds every voxel, empty or not.
+/// @throws Error (Fault::memory) if there is not.
 void check_room(const fs::path& path, const voxelizer::Grid& grid) {
     std::string ending = path.extension().string();
     std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -68,7 +70,7 @@ void check_room(const fs::path& path, const voxelizer::Grid& grid) {
 
 std::unique_ptr<voxelizer::VoxelWriter> make_writer(const fs::path& path, const voxelizer::Grid& grid) {
     check_room(path, grid);
-    // A device needs no ending: it gets what numpy reads.
+    // A device needs no ending; it gets a .npy file.
     if (is_device(path) && !path.has_extension()) return voxelizer::make_npy_writer(path, grid);
     return voxelizer::make_voxel_writer(path, grid);
 }

@@ -9,10 +9,10 @@
 
 namespace cairn::app {
 
-/// What is left to do when the command line has been read.
+/// The work of a verb, once the command line has been read.
 using Work = std::function<ExitCode()>;
 
-/// Each teaches one verb to the command, and sets `chosen` when the command line names it.
+/// Each function adds one verb to the command, and sets `chosen` if the command line names that verb.
 void add_info(CLI::App& command, Work& chosen);
 void add_voxelize(CLI::App& command, Work& chosen);
 void add_check(CLI::App& command, Work& chosen);

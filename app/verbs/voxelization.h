@@ -17,7 +17,7 @@
 
 namespace cairn::app {
 
-/// What `cairn voxelize` and `cairn check` have in common.
+/// Options that `cairn voxelize` and `cairn check` have in common.
 struct VoxelizationOptions {
     CommonOptions common;
     GridOptions grid;
@@ -25,33 +25,35 @@ struct VoxelizationOptions {
 };
 void add_voxelization_options(CLI::App& verb, VoxelizationOptions& options);
 
-/// A scene, and the grid to cut it with.
+/// A scene, and the grid to voxelize it in.
 struct GriddedInput {
     SceneInput input;
     voxelizer::Grid grid;
     double load_ms = 0.0;
 };
-/// @throws Error  when it cannot be loaded, or the options make no grid; before anything is written.
+/// @throws Error  if the scene cannot be loaded or the options are not those of a grid, before anything is
+/// written.
 [[nodiscard]] GriddedInput load_gridded(const VoxelizationOptions& options);
 
 /// Voxelizes a scene on the GPU, tile by tile.
 class Voxelization {
 public:
     struct Needs {
-        bool attributes = false;  ///< tiles come with colours and normals
-        bool surface = false;     ///< surface() when all is on the GPU
-        bool solid = false;       ///< what closed parts enclose, too
+        bool attributes = false;  ///< tiles have colours and normals
+        bool surface = false;     ///< surface() is kept after the upload
+        bool solid = false;       ///< insides of closed parts are filled
     };
-    /// Frees the scene.
+    /// Prepares everything on the GPU, and frees the scene.
     Voxelization(const VoxelizationOptions& options, GriddedInput scene, const Needs& needs);
 
     [[nodiscard]] const voxelizer::Grid& grid() const { return grid_; }
     [[nodiscard]] const voxelizer::Surface& surface() const { return *surface_; }
 
-    /// @throws Error (Fault::interrupted) when an Interrupt was asked for; what `sink` throws.
+    /// Voxelizes all tiles, in order, and passes them to `sink`.
+    /// @throws Error (Fault::interrupted) if Interrupt::asked(); what `sink` throws.
     void run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress);
 
-    /// What both verbs say: the grid, what is occupied, times and driver.
+    /// Adds the figures of both verbs: the grid, occupied voxels, times and the driver.
     void report(Report& report) const;
 
 private:
@@ -77,7 +79,7 @@ private:
     voxelizer::TileStatistics statistics_;
 };
 
-/// "resolution": one number for a cube, else three.
+/// The value of "resolution" in a report: one number for a cube, else three.
 [[nodiscard]] Json resolution_of(const voxelizer::Grid& grid);
 
 }  // namespace cairn::app

@@ -10,12 +10,13 @@
 
 namespace cairn::app {
 
-/// Puts pictures on the whole of the window. They are sRGB-encoded already, and so is a window's framebuffer
-/// as long as GL_FRAMEBUFFER_SRGB is off, as it is by default: bytes are copied as they are.
+/// Draws pictures over the whole window. Pictures are sRGB-encoded already, and a window's framebuffer takes
+/// bytes as they are, because GL_FRAMEBUFFER_SRGB is off by default.
 class Canvas {
 public:
+    /// @param revision  number of the image; it is sent to the GPU only if the number has changed.
     void draw(const optics::Image& image, std::uint64_t revision, const glm::ivec2& window);
-    /// Only the rows that have been rendered.
+    /// Draws only the rows that have been rendered.
     void draw(const Refinement& growing, std::uint64_t revision, const glm::ivec2& window);
 
 private:
@@ -23,7 +24,7 @@ private:
         gl::TextureHandle texture;
         gl::FramebufferHandle framebuffer;
         glm::ivec2 size{0};
-        std::uint64_t revision = 0;  // of what it holds; 0: nothing
+        std::uint64_t revision = 0;  // revision of the image in the texture; 0: no image
         void hold(const optics::Image& image, std::uint64_t new_revision);
         void draw(const renderer::Rows& rows, const glm::ivec2& window) const;
     };

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double highest = glm::radians(89.0);
 constexpr double faster_a_step = 1.25;
-/// Sizes of the scene a second.
+/// Speeds in scene sizes per second.
 constexpr double first_speed = 0.25;
 constexpr double least_speed = 1e-5;
 constexpr double largest_speed = 10.0;
@@ -24,7 +24,7 @@ void FlyCamera::look(const glm::dvec2& turned) {
     const glm::dvec3 ahead = camera_.target - camera_.eye;
     const double distance = glm::length(ahead);
     const bool is_vertical = std::abs(ahead.x) + std::abs(ahead.z) < 1e-9 * distance;
-    // Looking straight down, the way up in the picture is what lies ahead once the head is raised.
+    // If the camera looks straight down, "up" in the picture is the direction ahead once it is raised.
     const glm::dvec3 level = is_vertical ? camera_.up : ahead;
     const double azimuth = std::atan2(level.x, level.z) - turned.x;
     const double elevation =

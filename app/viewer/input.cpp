@@ -71,7 +71,7 @@ void Input::take_events(double seconds) {
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-/// Letters by what the keyboard's layout calls them.
+/// Letters are those of the keyboard's layout.
 void Input::on_key(int key, int scancode, int action) {
     if (action != GLFW_PRESS) return;
     if (key == GLFW_KEY_ESCAPE) glfwSetWindowShouldClose(window_, GLFW_TRUE);
@@ -112,7 +112,7 @@ void Input::on_cursor(const glm::dvec2& place) {
     }
 }
 
-/// By the places of the keys, whatever their letters.
+/// Keys are identified by their places, whatever their letters.
 glm::dvec3 Input::ways() const {
     const auto held = [this](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0 : 0.0; };
     return {held(GLFW_KEY_D) - held(GLFW_KEY_A), held(GLFW_KEY_E) - held(GLFW_KEY_Q),

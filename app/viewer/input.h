@@ -12,7 +12,8 @@ struct GLFWwindow;
 
 namespace cairn::app {
 
-/// Keys and mouse of a GLFW window, as the viewer takes them. One for each window, as long as it listens.
+/// Passes keys and mouse of a GLFW window on to a viewer, from construction to destruction. At most one per
+/// window at a time.
 class Input {
 public:
     Input(GLFWwindow* window, Viewer& viewer);
@@ -22,12 +23,12 @@ public:
     Input& operator=(Input&&) = delete;
     ~Input();
 
-    /// Takes the events that wait, or waits for one as long as `seconds`.
-    /// @throws what went wrong in answering them: an exception must not pass through GLFW's own frames.
+    /// Handles the events that wait, or waits for one for up to `seconds`.
+    /// @throws what a handler threw. It is kept until GLFW returns: exceptions must not pass through GLFW.
     void take_events(double seconds);
 
     [[nodiscard]] bool wants_help() const { return help_; }
-    /// Something happened since the last call: the window is to be drawn again.
+    /// Whether anything has happened since the last call, so that the window is to be drawn again.
     [[nodiscard]] bool take_stir() { return std::exchange(stir_, false); }
 
 private:

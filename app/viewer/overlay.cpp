@@ -55,7 +55,7 @@ void draw_help() {
 Overlay::Overlay(GLFWwindow* window) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;  // nothing is to be kept
+    ImGui::GetIO().IniFilename = nullptr;  // no file with the state of windows
     ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
     ImGui::StyleColorsDark();
     ImGui_ImplGlfw_InitForOpenGL(window, false);

@@ -6,7 +6,7 @@ struct GLFWwindow;
 
 namespace cairn::app {
 
-/// Text over the picture (Dear ImGui). One at a time; it takes no input.
+/// Text over the picture (Dear ImGui). At most one object at a time. It takes no input.
 class Overlay {
 public:
     explicit Overlay(GLFWwindow* window);
@@ -16,8 +16,8 @@ public:
     Overlay& operator=(Overlay&&) = delete;
     ~Overlay();
 
-    /// @param line    at the bottom
-    /// @param notice  above it, or empty
+    /// @param line    text at the bottom
+    /// @param notice  text above `line`, or empty
     void draw(const std::string& line, const std::string& notice, bool with_help) const;
 };
 

@@ -5,11 +5,11 @@
 namespace cairn::app {
 namespace {
 
-/// A band that lacks something is given up after so many visits that could add nothing and changed no pixel,
-/// or after so many in all: the pools are too small for it.
+/// A band that lacks bricks is given up, because the pools are too small, after most_idle_visits visits that
+/// produced nothing and changed no pixel, or after most_visits visits in all.
 constexpr int most_idle_visits = 3;
 constexpr int most_visits = 500;
-/// The marcher's blocks of pixels are as high.
+/// Height of the marcher's blocks of pixels.
 constexpr int block_rows = 8;
 
 int rows_at(const Pace& pace, int width) {
@@ -42,10 +42,10 @@ double Refinement::share_done() const {
     return double(rows) / view_.size.height;
 }
 
-/// The next rows of the first sweep, then the last band that lacks something, until nothing more can be done
-/// for it: where the pools hold one band but not all, turns would make the bands evict each other's bricks.
-/// From the last to the first, because the pools hold what the sweep used last. A band is cut where it would
-/// take long.
+/// Chooses the next rows of the first sweep; after it, the last band that lacks bricks, until nothing more
+/// can be done for that band. If the pools held one band but not all, bands in turn would evict each other's
+/// bricks. Bands go from the last to the first, because the pools hold the bricks that the sweep used last. A
+/// band is cut if it would take too long.
 Band& Refinement::choose(const Pace& pace) {
     const int rows = rows_at(pace, view_.size.width);
     if (!complete()) {

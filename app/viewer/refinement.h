@@ -9,40 +9,43 @@
 
 namespace cairn::app {
 
-/// Some rows of a picture that is being refined.
+/// Adjacent rows of a picture that is being refined.
 struct Band {
     renderer::Rows rows;
     bool converged = false;
-    bool stuck = false;   ///< the pools are too small for it
-    int idle_visits = 0;  ///< that changed nothing
-    int visits = 0;
+    bool stuck = false;   ///< the pools are too small
+    int idle_visits = 0;  ///< visits in a row that changed nothing
+    int visits = 0;       ///< slices that rendered these rows
 };
 
-/// A picture that comes to be in slices of rows, so that whoever asks for it can do other things in between.
-/// First every row is rendered with what is there, then those are gone over that lack something.
+/// Renders a picture in slices of rows, so that the caller can do other things in between. First every row is
+/// rendered with the bricks that are there, then the rows that lack bricks are rendered again.
 class Refinement {
 public:
-    Refinement() { view_.size = {0, 0}; }  ///< nothing to do
+    /// An empty picture: nothing is left to do.
+    Refinement() { view_.size = {0, 0}; }
     explicit Refinement(const renderer::View& view);
 
     [[nodiscard]] const renderer::View& view() const { return view_; }
-    [[nodiscard]] const optics::Image& image() const { return image_; }  ///< rows of no band are not filled
+    /// The picture so far. Rows that are in no band are not rendered yet.
+    [[nodiscard]] const optics::Image& image() const { return image_; }
     [[nodiscard]] const std::vector<Band>& bands() const { return bands_; }
     [[nodiscard]] bool empty() const { return image_.rgba.empty(); }
 
-    /// Every row has been rendered once.
+    /// Whether every row has been rendered once.
     [[nodiscard]] bool complete() const { return next_row_ == view_.size.height; }
-    /// Nothing is left to do, but perhaps for want of room in the pools.
+    /// Whether nothing is left to do that the pools have room for.
     [[nodiscard]] bool settled() const;
-    /// The picture is that of Renderer::render() without a budget.
+    /// Whether the picture is that of Renderer::render() without a budget.
     [[nodiscard]] bool converged() const;
-    [[nodiscard]] double share_done() const;  ///< rows that are settled, in [0, 1]
+    /// Share of the rows that are settled, in [0, 1].
+    [[nodiscard]] double share_done() const;
 
-    /// Renders one slice; only when it is not settled. @return what the slice took.
+    /// Renders one slice. Must not be settled(). @return the statistics of the slice.
     renderer::FrameStatistics step(renderer::Renderer& renderer, Pace& pace);
 
-    /// Renders one slice that is stuck as if there were all the time: it converges whatever the pools' size.
-    /// @return what the slice took; none if no slice is stuck.
+    /// Renders one stuck slice without a budget, so that it converges whatever the size of the pools.
+    /// @return the statistics of the slice; none if no slice is stuck.
     std::optional<renderer::FrameStatistics> finish_stuck(renderer::Renderer& renderer);
 
 private:
@@ -53,7 +56,7 @@ private:
     renderer::View view_;
     optics::Image image_;
     std::vector<Band> bands_;
-    int next_row_ = 0;  // of the first sweep
+    int next_row_ = 0;  // next row of the first sweep
 };
 
 }  // namespace cairn::app

@@ -12,16 +12,17 @@
 namespace cairn::app {
 namespace {
 
-/// A frame while the view changes, and a slice while it stands still. Each may take about as long again where
-/// bricks are produced.
+/// Milliseconds of a frame while the view changes, and of a slice while it stands still. Each may take about
+/// as long again if bricks are produced.
 constexpr double frame_aim_ms = 50.0;
 constexpr double slice_aim_ms = 30.0;
 constexpr double least_prefetch_ms = 5.0;
-constexpr double ahead_ms = 8.0;  // of prefetching at a time, while nothing moves
+constexpr double ahead_ms = 8.0;  // milliseconds of prefetching at a time while nothing moves
 constexpr double first_pixels = 60000.0;
-/// The view stands still when it has not changed for so long: between two events of a slow drag it does not.
+/// The view stands still once it has not changed for this long, which is more than the time between two
+/// events of a slow drag.
 constexpr double settle_seconds = 0.15;
-/// From here on the next stage is the full resolution.
+/// From this scale on, the next stage is the full resolution.
 constexpr double nearly_full = 0.6;
 constexpr double pixel_error_a_step = 1.4142135623730951;
 constexpr double least_pixel_error = 0.0625;
@@ -30,7 +31,7 @@ constexpr double longest_fly_step = 0.2;  // seconds; after a pause the camera m
 constexpr int least_side = 16;
 constexpr double forever = 1e9;
 
-/// The view at a share of its width and height.
+/// The view with its width and height scaled.
 renderer::View scaled(renderer::View view, double scale) {
     view.size.width = std::clamp(int(std::lround(view.size.width * scale)),
                                  std::min(least_side, view.size.width), view.size.width);
@@ -157,14 +158,14 @@ void Viewer::step(double now) {
         } else if (!settled()) {
             grow();
         } else {
-            look_ahead();
+            prefetch_finer();
         }
     }
 }
 
 double Viewer::rest(double now) const {
     if (changed_ || ways_ != glm::dvec3(0.0) || !(snapped(camera()) == view_.camera)) return 0.0;
-    if (settled() && !picture_ && !looks_ahead_) return forever;
+    if (settled() && !picture_ && !may_prefetch_) return forever;
     return std::max(changed_at_ + settle_seconds - now, 0.0);
 }
 
@@ -174,7 +175,7 @@ void Viewer::render_moving_frame() {
     auto [image, statistics] = renderer_.render(small, {.budget = Milliseconds(frame_aim_ms)});
     base_ = std::move(image);
     note(frame_ms_, statistics);
-    // March and production alike: what counts is when the picture is there.
+    // Time of marching and of production: until the picture is there.
     frame_pace_.learn(statistics.milliseconds, double(small.size.width) * small.size.height);
     ++base_revision_;
     growing_ = Refinement();
@@ -182,7 +183,7 @@ void Viewer::render_moving_frame() {
     prefetch_for(small);
 }
 
-/// Time that a moving frame has left goes to the bricks of the next one.
+/// Produces bricks of the next moving frame in the time that the last one has left.
 void Viewer::prefetch_for(renderer::View next) {
     const double left_ms = frame_aim_ms - last_.milliseconds;
     const optics::Camera from = moved_from_.value_or(next.camera);
@@ -192,7 +193,7 @@ void Viewer::prefetch_for(renderer::View next) {
     bricks_produced_ += renderer_.prefetch(next, Milliseconds(left_ms));
 }
 
-/// The next slice of the picture that grows; a coarse one that is whole makes room for a finer one.
+/// Renders the next slice of the growing picture. A complete coarse picture is followed by a finer one.
 void Viewer::grow() {
     if (growing_.empty() || (growing_.complete() && !(growing_.view() == view_))) {
         if (!growing_.empty()) {
@@ -204,13 +205,13 @@ void Viewer::grow() {
     }
     note(slice_ms_, growing_.step(renderer_, slice_pace_));
     ++growing_revision_;
-    looks_ahead_ = converged();
+    may_prefetch_ = converged();
 }
 
-/// For a camera that moves closer.
-void Viewer::look_ahead() {
+/// Produces bricks for a camera that moves closer.
+void Viewer::prefetch_finer() {
     const renderer::Prefetched ahead = renderer_.prefetch_finer(Milliseconds(ahead_ms));
-    looks_ahead_ = ahead.more;
+    may_prefetch_ = ahead.more;
     bricks_produced_ += ahead.bricks;
 }
 

@@ -32,38 +32,42 @@ struct TakenPicture {
     optics::Image image;
 };
 
-/// The state of the explorer, without its window: input in, one piece of work at a time, pictures out.
+/// The viewer without its window: it takes input, does one piece of work at a time, and holds pictures.
 ///
 /// While the view changes, whole frames are rendered with as few pixels as the time allows. When it stands
-/// still the picture grows to full resolution and refines, in slices that end soon, so that input never
-/// waits. When it has converged, what a camera that moves closer will need is produced as far as there is
-/// room; then the viewer rests.
+/// still, the picture grows to full resolution and is refined, in slices that end soon, so that input never
+/// waits. Once it has converged, the bricks that a camera that moves closer will need are produced as far as
+/// there is room; then the viewer rests.
 class Viewer {
 public:
-    /// @param scene_size  the diagonal of the scene, world units, > 0.
+    /// @param scene_size  diagonal of the scene in world units, > 0.
     Viewer(renderer::Renderer& renderer, const renderer::View& view, double scene_size);
 
-    /// Renders a few pixels of every kind, so that no shader is compiled while somebody waits for a frame.
+    /// Renders a few pixels of every kind, so that no frame has to wait for a shader to be compiled.
     void warm_up();
 
     void command(Command command);
-    /// A mouse drag, in heights of the window: x to the right, y downwards.
-    void drag_left(const glm::dvec2& moved);   ///< orbits, or looks around
-    void drag_right(const glm::dvec2& moved);  ///< pans
-    void wheel(double steps);                  ///< zooms, or changes the speed
+    /// Orbits, or looks around. @param moved  in units of the window's height: x to the right, y downwards.
+    void drag_left(const glm::dvec2& moved);
+    /// Pans. @param moved  as for drag_left().
+    void drag_right(const glm::dvec2& moved);
+    /// Zooms, or changes the speed of flying.
+    void wheel(double steps);
     void fly(const glm::dvec3& ways) { ways_ = flying_ ? ways : glm::dvec3(0.0); }
-    void resize(const glm::ivec2& size);  ///< pixels; zero, as of a window out of sight, changes nothing
+    /// @param size  pixels; zero, the size of a minimized window, changes nothing.
+    void resize(const glm::ivec2& size);
 
-    /// Does one piece of work, if there is any. @param now  seconds, from any start.
+    /// Does one piece of work, if there is any. @param now  seconds since any moment.
     void step(double now);
-    /// Seconds until there may be work, if nothing is put in: 0 when there is some now.
+    /// Seconds until there may be work if there is no input; 0 if there is work now.
     [[nodiscard]] double rest(double now) const;
 
-    /// A finished picture that was asked for, once.
+    /// A finished picture that was asked for. Each is returned once.
     [[nodiscard]] std::optional<TakenPicture> take_picture();
 
-    /// The last whole picture, at any size, and the one that is growing over it (or empty).
+    /// The last whole picture, of any size.
     [[nodiscard]] const optics::Image& base() const { return base_; }
+    /// The picture that grows over base(), or an empty one.
     [[nodiscard]] const Refinement& growing() const { return growing_; }
     [[nodiscard]] std::uint64_t base_revision() const { return base_revision_; }
     [[nodiscard]] std::uint64_t growing_revision() const { return growing_revision_; }
@@ -71,11 +75,13 @@ public:
     [[nodiscard]] const renderer::View& view() const { return view_; }
     [[nodiscard]] bool flying() const { return flying_; }
     [[nodiscard]] double fly_speed() const { return fly_.speed(); }
-    [[nodiscard]] bool settled() const;    ///< the view is rendered at full size, as well as the pools allow
-    [[nodiscard]] bool converged() const;  ///< and is the picture of Renderer::render() without a budget
+    /// Whether the view is rendered at full size, as well as the pools allow.
+    [[nodiscard]] bool settled() const;
+    /// Whether, besides, the picture is that of Renderer::render() without a budget.
+    [[nodiscard]] bool converged() const;
     [[nodiscard]] std::string statistics_line() const;
 
-    /// How long each call of the renderer took, for a report.
+    /// Milliseconds of each call of the renderer: of frames while the view changed, and of slices.
     [[nodiscard]] const std::vector<double>& frame_ms() const { return frame_ms_; }
     [[nodiscard]] const std::vector<double>& slice_ms() const { return slice_ms_; }
     [[nodiscard]] std::uint64_t bricks_produced() const { return bricks_produced_; }
@@ -86,13 +92,13 @@ private:
     void prefetch_for(renderer::View next);
     void grow();
     void continue_picture();
-    void look_ahead();
+    void prefetch_finer();
     void note(std::vector<double>& times, const renderer::FrameStatistics& statistics);
 
     renderer::Renderer& renderer_;
-    renderer::View view_;  // wanted, at full size
+    renderer::View view_;  // the wanted view at full size
     optics::Camera first_camera_;
-    renderer::ShadowQuality::Kind shadow_kind_;  // where there are shadows
+    renderer::ShadowQuality::Kind shadow_kind_;  // kind of shadows if they are on
     double scene_size_;
     OrbitCamera orbit_;
     FlyCamera fly_;
@@ -104,15 +110,15 @@ private:
 
     Pace frame_pace_;
     Pace slice_pace_;
-    bool looks_ahead_ = false;                  // at rest, there may be more to prefetch
-    std::optional<optics::Camera> moved_from_;  // the camera of the moving frame before
+    bool may_prefetch_ = false;                 // there may be more to prefetch at rest
+    std::optional<optics::Camera> moved_from_;  // camera of the last moving frame
     optics::Image base_;
     Refinement growing_;
     std::optional<Refinement> picture_;
     std::optional<TakenPicture> taken_;
     std::uint64_t base_revision_ = 0;
     std::uint64_t growing_revision_ = 0;
-    renderer::FrameStatistics last_;  // of the last call of the renderer that gave a picture
+    renderer::FrameStatistics last_;  // statistics of the last picture
     std::vector<double> frame_ms_;
     std::vector<double> slice_ms_;
     std::uint64_t bricks_produced_ = 0;

@@ -9,29 +9,28 @@
 
 namespace cairn::bench {
 
-/// A measurement by its name, "voxelize" for instance.
+/// A chart by its name, "voxelize" for instance.
 struct ChartKind {
     std::string_view name;
     std::string_view description;
     Chart (*draw)(const ChartOptions& options);
-    /// The others it varies itself, or renders no voxels.
+    /// Options of voxels that the chart takes. The others it varies itself, or has no use for.
     VoxelOptionsTaken takes = {};
 };
 [[nodiscard]] std::span<const ChartKind> charts();
 
 /// Every voxelization method and its peers, by time and by error against the exact voxels: voxelize.csv and
-/// voxelize.png. Needs a current context. @throws Error as loading, voxelizing and writing do.
+/// voxelize.png. Like all charts, it needs a current context, and throws as loading, voxelizing, rendering
+/// and writing do.
 [[nodiscard]] Chart chart_voxelize(const ChartOptions& options);
 
-/// Converged frames with hard shadows beside Embree's and NanoVDB's rays: embree.csv. Needs a current
-/// context.
+/// Converged frames with hard shadows beside Embree's and NanoVDB's rays: embree.csv.
 [[nodiscard]] Chart chart_embree(const ChartOptions& options);
 
-/// Converged frames by time and by error against Embree with 64 samples a pixel: render.csv and render.png.
-/// Needs a current context, as the others do.
+/// Converged frames by time and by error against Embree with 64 samples per pixel: render.csv and render.png.
 [[nodiscard]] Chart chart_render(const ChartOptions& options);
 
-/// The same view of ever more voxels: resolution.csv.
+/// One view at rising resolutions: resolution.csv.
 [[nodiscard]] Chart chart_resolution(const ChartOptions& options);
 
 /// Crassin 2007, Figures 3.24 and 3.26: structure.csv.
@@ -40,7 +39,7 @@ struct ChartKind {
 /// Crassin et al. 2008, Figure 7: exploration.csv.
 [[nodiscard]] Chart chart_exploration(const ChartOptions& options);
 
-/// What first frames produce, and what of it is used: production.csv.
+/// The bricks that first frames produce, and how many of them are used: production.csv.
 [[nodiscard]] Chart chart_production(const ChartOptions& options);
 
 /// Animated scenes with soft shadows through pyramids built for each frame: moving_shadow.csv.
@@ -49,12 +48,12 @@ struct ChartKind {
 /// Atty et al. 2005, sections 4.2 and 5.2: soft_shadow_map.csv and soft_shadow_map.png.
 [[nodiscard]] Chart chart_soft_shadow_map(const ChartOptions& options);
 
-/// What rays, occlusion queries (Crassin 2007, section 3.6) and the frustum alone have produced for the same
-/// views: visibility.csv.
+/// The bricks that rays, occlusion queries (Crassin 2007, section 3.6) and the frustum alone produce for the
+/// same views: visibility.csv.
 [[nodiscard]] Chart chart_visibility(const ChartOptions& options);
 
-/// Shadows of a hard and of a soft light by every method there is, by time and by error against Embree:
-/// shadow.csv and shadow.png.
+/// Shadows of a hard and of a soft light by every method, by time and by error against Embree: shadow.csv and
+/// shadow.png.
 [[nodiscard]] Chart chart_shadow(const ChartOptions& options);
 
 /// Forest et al. 2009, Tables 2 and 3: shadow_rays.csv.
@@ -68,21 +67,22 @@ struct ChartKind {
 [[nodiscard]] Chart chart_levels(const ChartOptions& options);
 
 /// Animations moved and voxelized for each frame, beside Embree's rebuilding: moving.csv.
-/// @throws Error (Fault::usage) if a scene has no animation, besides what loading and voxelizing throw.
+/// @throws Error (Fault::usage) if a scene has no animation.
 [[nodiscard]] Chart chart_moving(const ChartOptions& options);
 
-/// One region that holds about 2000 triangles, with the index and without: region_deep.csv.
+/// One region that holds about 2000 triangles, with and without the index: region_deep.csv.
 [[nodiscard]] Chart chart_region_deep(const ChartOptions& options);
 
-/// A grid tile by tile, in regions of 1 to 64 MiB: region_sizes.csv.
+/// A grid voxelized tile by tile, in regions of 1 to 64 MiB: region_sizes.csv.
 [[nodiscard]] Chart chart_region_sizes(const ChartOptions& options);
 
-/// Names the chart's table `name`, writes it as `folder`/`name`.csv, and adds that to the chart's files.
+/// Names the chart's table `name`, writes it as `folder`/`name`.csv, and adds the file to the chart's files.
 /// @throws Error (Fault::usage) if the folder cannot be made or written to.
 void write_table(Chart& chart, const std::filesystem::path& folder, const std::string& name);
 
-/// Draws the chart's table as `folder`/`name`.png, the table's name, or notes why it cannot.
-/// @param script_of  the gnuplot script of a table's picture, to be written there
+/// Draws the chart's table as `folder`/NAME.png, NAME being the table's name. If that fails, adds a note with
+/// the reason.
+/// @param script_of  makes the gnuplot script that draws the table to a path
 void write_picture(Chart& chart, const std::filesystem::path& folder,
                    std::string (*script_of)(const Table&, const std::filesystem::path&));
 

@@ -1,5 +1,5 @@
-// The conservative method against the exact reference, bit by bit, over every scene there is: at rest and, if
-// a scene has an animation, in the middle of its first one.
+// The conservative method against the exact reference, bit by bit, over all scenes: at rest and, if a scene
+// has an animation, in the middle of its first one.
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -26,10 +26,10 @@ namespace {
 
 struct CheckedScene {
     std::string path;
-    std::string name;  ///< in the table
+    std::string name;  ///< name in the table
 };
 
-/// The scenes that were asked for; else the built-in ones, and every glTF file of the scene folder.
+/// The scenes of the options; if there are none, the built-in ones and every glTF file of the scene folder.
 std::vector<CheckedScene> checked_scenes(Chart& chart, const ChartOptions& options) {
     std::vector<CheckedScene> scenes;
     for (const std::string& scene : options.scenes)
@@ -54,7 +54,7 @@ std::vector<CheckedScene> checked_scenes(Chart& chart, const ChartOptions& optio
     return scenes;
 }
 
-/// Compares tile by tile, as tiles come; what does not come must be empty in the truth too.
+/// Compares tile by tile, as tiles arrive. Tiles that do not arrive must be empty in the truth too.
 reference::Comparison compared(voxelizer::Voxelizer& voxelizer, const voxelizer::Surface& surface,
                                std::uint64_t& occupied) {
     const voxelizer::GpuSurface on_gpu = voxelizer::upload(surface);
@@ -138,7 +138,7 @@ Chart chart_check(const ChartOptions& options) {
     Checks checks(options, chart);
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         checks.check(scenes[i], resolutions);
-        // It takes long: what is known stays if it is stopped.
+        // The chart takes long: if it is stopped, the rows so far are kept.
         write_table(chart, options.folder, "check");
         if (options.progress) options.progress(double(i + 1) / double(scenes.size()));
     }

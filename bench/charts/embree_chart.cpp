@@ -25,14 +25,14 @@
 namespace cairn::bench {
 namespace {
 
-/// Where the two are compared on the same voxels: a tree of one level of bricks under the root.
+/// The tree for the comparison on the same voxels: one level of bricks under the root.
 constexpr int voxel_resolution = 512;
 constexpr renderer::TreeOptions voxel_tree{.n = 4, .m = 32, .max_resolution = voxel_resolution};
-constexpr double always_finest = 1e-3;  // pixel error
+constexpr double always_finest = 1e-3;  // pixel error below the size of the finest voxels
 
 struct Contender {
     std::string name;
-    std::function<double()> run;  ///< milliseconds
+    std::function<double()> run;  ///< runs once and returns milliseconds
     std::vector<double> samples;
 };
 

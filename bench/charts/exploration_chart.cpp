@@ -1,5 +1,5 @@
 // Crassin et al. 2008, Figure 7: the cost of a frame at three distances, and of the frames of a camera that
-// comes nearer: rays, production, passes, uploading, the tree.
+// moves closer: rays, production, passes, uploads, the tree.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -17,10 +17,10 @@ namespace {
 
 constexpr int own_size = 256;
 constexpr int own_frames = 24;
-constexpr double nearest = 0.25;  // of the distance from which the whole is seen
-constexpr double voxels_a_frame = 4.0;
+constexpr double nearest = 0.25;  // share of the distance from which the whole is seen
+constexpr double voxels_per_frame = 4.0;
 
-/// What the table tells of a frame.
+/// Figures of a frame, as columns of the table.
 struct Figures {
     double render_ms = 0.0;
     double bricks_ms = 0.0;
@@ -30,7 +30,7 @@ struct Figures {
     double passes = 0.0;
     double ms = 0.0;
 
-    /// A share of a frame's.
+    /// Adds the figures of a frame, times `share`.
     void add(const renderer::FrameStatistics& s, double share) {
         render_ms += share * s.march_ms;
         bricks_ms += share * (s.produce_ms - s.tree_ms - s.upload_ms);
@@ -42,7 +42,7 @@ struct Figures {
     }
 };
 
-/// Its eye at a share of the distance.
+/// The view with its eye at a share of the distance.
 renderer::View at(renderer::View view, double share) {
     view.camera.eye = view.camera.target + share * (view.camera.eye - view.camera.target);
     return view;
@@ -57,7 +57,7 @@ public:
         const renderer::View view = frame_case.view(size_, size_);
         renderer::Renderer ours = make(frame_case);
         (void)ours.render(view);
-        come_nearer(frame_case, ours, view);
+        move_closer(frame_case, ours, view);
         go_steadily(frame_case, at(view, nearest));
         for (const auto& [name, share] :
              {std::pair("far", 2.0), std::pair("whole", 1.0), std::pair("near", nearest)})
@@ -70,7 +70,7 @@ private:
         return frame_case.make(voxels.tree(), options_.shaders, voxels.renderer(), voxels.volume());
     }
 
-    /// Converged frames.
+    /// Measures converged frames.
     void stand(const FrameCase& frame_case, const char* part, renderer::Renderer& ours,
                const renderer::View& view) {
         renderer::FrameStatistics last;
@@ -90,8 +90,8 @@ private:
         add(frame_case, part, 1, figures);
     }
 
-    /// Means over the frames; the first, into empty pools, is not one of them.
-    void come_nearer(const FrameCase& frame_case, renderer::Renderer& ours, const renderer::View& view) {
+    /// Moves the camera closer. Figures are means over the frames, without the first one, into empty pools.
+    void move_closer(const FrameCase& frame_case, renderer::Renderer& ours, const renderer::View& view) {
         Figures mean;
         for (int frame = 1; frame <= own_frames; ++frame) {
             const renderer::View next = at(view, std::pow(nearest, double(frame) / own_frames));
@@ -100,8 +100,9 @@ private:
         add(frame_case, "exploration", own_frames, mean);
     }
 
-    /// Straight on, four voxels of the nearest tile a frame: the speed of Crassin et al. 2008, Figure 7. As
-    /// they relax it over time, it drops at once where voxels become finer, and rises slowly.
+    /// Moves the camera straight ahead by four voxels of the nearest tile per frame, the speed of Crassin et
+    /// al. 2008, Figure 7. They relax it over time: it drops at once where voxels become finer, and rises
+    /// slowly.
     void go_steadily(const FrameCase& frame_case, renderer::View view) {
         const std::unique_ptr<renderer::Content> content =
             frame_case.content(options_.voxels.tree(), options_.shaders);
@@ -113,7 +114,7 @@ private:
         for (int frame = 1; frame <= own_frames; ++frame) {
             const ViewTest test(renderer::march_view(view, content->grid(), shape, nullptr), shape);
             const double side = nearest_voxel_side(content->oracle(), test).value_or(0.0);
-            const double wanted = voxels_a_frame * side * content->grid().voxel_size;
+            const double wanted = voxels_per_frame * side * content->grid().voxel_size;
             step = frame == 1 ? wanted : std::min(wanted, std::sqrt(step * wanted));
             const glm::dvec3 way = step * glm::normalize(view.camera.target - view.camera.eye);
             view.camera.eye += way;
@@ -146,6 +147,7 @@ Chart chart_exploration(const ChartOptions& options) {
         scenes = {"builtin:hollow-sphere", "builtin:sponge", "builtin:tree"};
         add_real_scenes(chart, options, {"stanford_bunny_69k.glb"}, scenes);
     }
+    check_volume_options(chart, options, scenes);
     const std::vector<int> sizes =
         options.resolutions.empty() ? std::vector<int>{own_size} : options.resolutions;
     double done = 0.0;

@@ -1,6 +1,6 @@
-// Levels of detail: their error against Embree with 64 samples per pixel, beside what they cost. Scenes are
-// shown white, from their framing camera and from twice as far. Frames are converged ones, their times the
-// processor's, which hold better than the wall's where the machine is shared.
+// Levels of detail: their error against Embree with 64 samples per pixel, beside their cost. Scenes are shown
+// white, from their framing camera and from twice as far. Frames are converged. Times are processor times,
+// which vary less than wall-clock times on a machine that is shared.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -26,7 +26,7 @@ constexpr std::array distances = {1.0, 2.0};
 constexpr std::array pixel_errors = {0.5, 1.0, 2.0, 4.0};
 constexpr std::size_t pool_bytes = std::size_t(512) << 20U;
 constexpr double kibibyte = 1024.0;
-/// The error is in steps of an 8-bit picture.
+/// Errors are in steps of an 8-bit picture.
 constexpr double steps = 255.0;
 
 /// A level of detail, and whether bricks hold mips.
@@ -39,7 +39,7 @@ constexpr std::array methods = {Method{"nearest", false, renderer::LevelOfDetail
                                 Method{"nearest+mips", true, renderer::LevelOfDetail::Kind::nearest},
                                 Method{"blended", true, renderer::LevelOfDetail::Kind::blended}};
 
-/// Without colours and textures; alpha masks, which need their textures, stay.
+/// Removes colours and textures, except those of alpha masks, which need their textures.
 void whiten(scenes::Scene& scene) {
     for (scenes::Material& material : scene.materials) {
         material.base_color = glm::vec4(1.0F, 1.0F, 1.0F, material.base_color.a);

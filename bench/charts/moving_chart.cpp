@@ -1,7 +1,8 @@
 // Every frame of an animation, moved and voxelized on the GPU, beside the time that Embree needs to rebuild
 // its tree for the same frame: medians over the frames of all animations at 30 frames per second. The
-// contenders take turns at each frame, so that ratios hold when the machine's speed drifts. `deform` is what
-// each needs to have the frame's vertices: the pose and a shader here, take_snapshot on the CPU for Embree.
+// contenders take turns at each frame, so that ratios hold when the machine's speed drifts. `deform` is the
+// time that each takes for the frame's vertices: the pose and a shader here, take_snapshot on the CPU for
+// Embree.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -23,7 +24,7 @@ namespace cairn::bench {
 namespace {
 
 constexpr double frames_per_second = 30.0;
-/// Each so many frames, one is compared with the exact voxels.
+/// One of this many frames is compared with the exact voxels.
 constexpr std::size_t checked_frames = 10;
 
 struct Result {
@@ -46,7 +47,7 @@ void measure_animation(const scenes::Scene& scene, int animation, int resolution
     RebuiltTree low(first, RTC_BUILD_QUALITY_LOW);
     RebuiltTree medium(first, RTC_BUILD_QUALITY_MEDIUM);
     voxelizer::BitGrid bits;
-    // Programs are compiled by the driver at their first use, which some come to only after some frames.
+    // The driver compiles programs at their first use, which for some comes only after some frames.
     for (const double seconds : times)
         voxelizer.voxelize_into(moving.move_to(seconds), region, bits);
     for (std::size_t frame = 0; frame < times.size(); ++frame) {

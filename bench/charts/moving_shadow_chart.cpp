@@ -24,11 +24,11 @@ namespace {
 constexpr int width = 320;
 constexpr int height = 240;
 constexpr double frames_per_second = 30.0;
-constexpr int frames_a_run = 4;  // as many as --runs asks for, or all
+constexpr int frames_per_run = 4;  // frames per run that --runs asks for, or all frames
 constexpr std::size_t checked_frames = 3;
-constexpr double truth_error = 1.0 / 256;  // far under that of the voxels
+constexpr double truth_error = 1.0 / 256;  // far below the error of the voxels
 
-/// Some of them, evenly.
+/// At most `most` of the times, evenly spaced.
 std::vector<double> thinned(const std::vector<double>& times, std::size_t most) {
     if (times.size() <= most) return times;
     std::vector<double> some;
@@ -37,7 +37,7 @@ std::vector<double> thinned(const std::vector<double>& times, std::size_t most) 
     return some;
 }
 
-/// A scene with its ground, and what Embree sees of it at some moments.
+/// A scene with its ground, and Embree's pictures of it at some moments.
 class MovingScene {
 public:
     MovingScene(const std::string& path, int runs) : scene_(scenes::load(path)) {
@@ -48,9 +48,9 @@ public:
         scenes::add_ground(scene_, voxelized_);
         first_ = scenes::take_snapshot(scene_, when_);
         times_ = thinned(scenes::frame_times(scene_, when_, frames_per_second),
-                         std::size_t(frames_a_run) * std::size_t(runs));
+                         std::size_t(frames_per_run) * std::size_t(runs));
         view_.size = {width, height};
-        // The ground receives shadows outside the grid too, and throws none.
+        // The ground receives shadows outside the grid too, and casts none.
         view_.camera = optics::framing_camera(voxelized_, double(width) / height);
         const double size = 2.0 * glm::length(voxelized_.high - voxelized_.low);
         view_.light.positional = true;
@@ -122,12 +122,12 @@ double median_of(const std::vector<ShadowTimes>& frames, double ShadowTimes::*pa
 const renderer::ShadowRequest only_image = {.light = false};
 const renderer::ShadowRequest only_light = {.image = false};
 
-/// Frames at one size and count of rays, and their error.
+/// Measures frames of one size and number of rays, and their error.
 std::vector<Cell> measure(const MovingScene& scene, renderer::ShadowRenderer& renderer, int rays,
                           double budget_ms) {
     const renderer::View view = scene.view(rays);
     renderer.move_to(scene.times().front());
-    (void)renderer.render(view, only_image);  // the driver compiles at the first use
+    (void)renderer.render(view, only_image);  // the driver compiles programs at their first use
     std::vector<ShadowTimes> frames;
     std::vector<double> processor_ms;
     double spent_ms = 0.0;

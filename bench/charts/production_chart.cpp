@@ -1,5 +1,5 @@
-// What the first frame of a scene produces, and what of it rays use once nothing is missing: which is all
-// that an oracle with perfect knowledge would have had produced.
+// The bricks that the first frame of a scene produces, and how many of them rays use once nothing is missing:
+// an oracle with perfect knowledge would have produced no others.
 #include <algorithm>
 
 #include "bench/charts/chart.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int own_size = 512;
 
-/// Each run begins with empty pools.
+/// A row of the table. Each run begins with empty pools.
 std::vector<Cell> measure(const FrameCase& frame_case, int size, const ChartOptions& options) {
     std::vector<double> first_ms, produce_ms, tree_ms, upload_ms, brick_ms;
     std::vector<FrameContender> last;
@@ -55,6 +55,7 @@ Chart chart_production(const ChartOptions& options) {
         add_real_scenes(chart, options, {engine_path, "stanford_bunny_69k.glb", "stanford_dragon_871k.glb"},
                         scenes);
     }
+    check_volume_options(chart, options, scenes);
     const std::vector<int> sizes =
         options.resolutions.empty() ? std::vector<int>{own_size} : options.resolutions;
     double done = 0.0;

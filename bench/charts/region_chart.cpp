@@ -1,4 +1,4 @@
-// What a region costs, and how large regions should be.
+// The cost of a region, and how large regions should be.
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -55,13 +55,13 @@ voxelizer::Region region_with(const voxelizer::Surface& surface, voxelizer::Tria
     return best;
 }
 
-/// Without its folders, which are those of one machine.
+/// A file's name without its folders, which are those of one machine.
 std::string file_name(const std::string& path) {
     return std::filesystem::path(path).filename().string();
 }
 
-/// One region of 64^3 voxels, at the level where it holds about 2000 triangles: the index is asked and the
-/// region marked anew each time.
+/// Measures one region of 64^3 voxels, at the level where it holds about 2000 triangles. Each run queries the
+/// index and marks the region again.
 std::vector<Cell> measure_deep(const std::string& name, voxelizer::Voxelizer& voxelizer) {
     const voxelizer::Surface surface = surface_of(name, deep_resolution);
     const voxelizer::GpuSurface on_gpu = voxelizer::upload(surface);

@@ -1,5 +1,5 @@
-// Converged frames by time and by error against a picture of the triangles with 64 samples a pixel: over
-// pixel error and the shape of the tree, and at one of them over traversals and pool sizes.
+// Converged frames by time and by error against a picture of the triangles with 64 samples per pixel: over
+// pixel error and the shape of the tree and, at one shape and pixel error, over traversals and pool sizes.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -22,12 +22,13 @@ namespace {
 constexpr int own_size = 512;
 constexpr double mebibyte = 1048576.0;
 constexpr renderer::TreeOptions base{};
-/// The base shape has them all; the others every second one.
+/// The base shape is measured with all of them, the other shapes with every second one.
 constexpr std::array pixel_errors = {0.35, 0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0};
 constexpr std::array<std::array<int, 2>, 7> shapes = {
     {{base.n, base.m}, {2, 16}, {2, 32}, {3, 27}, {4, 8}, {4, 32}, {8, 16}}};
 constexpr std::array pools = {32U << 20U, 8U << 20U};
 
+/// The parameters of a contender.
 struct Setting {
     std::string varied;
     renderer::TreeOptions tree = {};
@@ -46,7 +47,7 @@ const char* name_of(renderer::Traversal traversal) {
     return "mini-stack";
 }
 
-/// Frames in turn, over all that is varied.
+/// Measures frames of all settings in turn.
 class Contest {
 public:
     Contest(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const renderer::View& view,
@@ -106,7 +107,7 @@ private:
     const renderer::View& view_;
     const ChartOptions& options_;
     std::vector<FrameContender> contenders_;
-    std::vector<Setting> settings_;  // of each
+    std::vector<Setting> settings_;  // one per contender
 };
 
 }  // namespace

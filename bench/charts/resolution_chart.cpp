@@ -1,4 +1,4 @@
-// The same view of ever finer voxels: what a converged frame costs, and what the pools hold.
+// One view at rising resolutions: the cost of a converged frame, and the bricks in the pools.
 #include <memory>
 
 #include "bench/charts/chart.h"
@@ -9,11 +9,12 @@
 namespace cairn::bench {
 namespace {
 
-/// With these, every power of 4 times 32 is a resolution of the tree itself.
+/// The resolutions of this tree are the powers of 4 times 32.
 constexpr renderer::TreeOptions tree{.n = 4, .m = 32};
 constexpr std::size_t pool_bytes = std::size_t(128) << 20U;
-constexpr int picture = 512;
-/// A second view through a narrow lens from the same place, whose pixels see voxels so much finer.
+constexpr int picture = 512;  // pixels per side
+/// The second view, from the same place, has a field of view divided by this, so that pixels see voxels finer
+/// by the same factor.
 constexpr double narrowed = 16.0;
 
 using Renderers = std::vector<std::shared_ptr<renderer::Renderer>>;
@@ -65,6 +66,7 @@ Chart chart_resolution(const ChartOptions& options) {
                            "node_pool_bytes", "driver",      "threads"};
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) scenes = {"builtin:hollow-sphere", "builtin:spheres-repeated", "builtin:knot"};
+    check_volume_options(chart, options, scenes);
     const std::vector<int> resolutions =
         options.resolutions.empty() ? std::vector<int>{512, 2048, 8192, 32768} : options.resolutions;
     double done = 0.0;

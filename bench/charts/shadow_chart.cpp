@@ -18,23 +18,23 @@ namespace cairn::bench {
 namespace {
 
 constexpr int own_width = 384;
-// Of ChartOptions::budget_ms: what a contender may take in the first sweep, and in both; and after how much
-// the rest of its line is left out.
+// Multiples of ChartOptions::budget_ms: the time of a contender in the first sweep, its time in both sweeps,
+// and the time after which the rest of its line is left out.
 constexpr double first_sweep_budgets = 0.25;
 constexpr double both_sweeps_budgets = 0.5;
 constexpr double slow_budgets = 7.0;
 constexpr double goal_rmse = 0.03;
 
-struct Measured {
+struct Measurement {
     ShadowContender contender;
     RepeatedRuns runs;
 };
 
-std::vector<Measured> measure(const ShadowCase& shadow_case, Chart& chart,
-                              const std::function<void(double)>& done) {
+std::vector<Measurement> measure(const ShadowCase& shadow_case, Chart& chart,
+                                 const std::function<void(double)>& done) {
     const ChartOptions& options = shadow_case.options;
-    std::vector<Measured> all;
-    std::map<std::pair<std::string, std::string>, double> slow;  // seconds; 0 once it is told
+    std::vector<Measurement> all;
+    std::map<std::pair<std::string, std::string>, double> slow;  // seconds; 0 once there is a note
     const std::vector<ShadowContender> contenders = shadow_contenders(shadow_case);
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         const std::pair line(contenders[i].method, contenders[i].setting.varied);
@@ -46,31 +46,32 @@ std::vector<Measured> measure(const ShadowCase& shadow_case, Chart& chart,
             known->second = 0.0;
             continue;
         }
-        RepeatedRuns& runs = all.emplace_back(Measured{contenders[i], RepeatedRuns(contenders[i].run)}).runs;
+        RepeatedRuns& runs =
+            all.emplace_back(Measurement{contenders[i], RepeatedRuns(contenders[i].run)}).runs;
         runs.sweep((options.runs + 1) / 2, first_sweep_budgets * options.budget_ms);
         if (runs.spent_ms() > slow_budgets * options.budget_ms) slow[line] = runs.spent_ms() / 1000.0;
         done(0.6 * double(i + 1) / double(contenders.size()));
     }
-    for (Measured& measured : all)
+    for (Measurement& measured : all)
         measured.runs.sweep(options.runs, both_sweeps_budgets * options.budget_ms);
     done(1.0);
     return all;
 }
 
-/// Which pixels a row of the table is about, and what is true of them; elsewhere -1.
-struct Judged {
+/// The pixels that a row of the table is about, with their true shares; -1 for all other pixels.
+struct PixelTruth {
     std::string receivers;
     std::vector<float> truth;
     bool is_ground = false;
 };
 
 struct Result {
-    const Measured* measured = nullptr;
+    const Measurement* measured = nullptr;
     reference::ShadowError error;
 };
 
-/// The time in which Embree's samples come to an error, between two counts of samples by a power of time;
-/// 0 where it takes more of them than were tried.
+/// The time that Embree takes to come down to an error, in milliseconds. Between two numbers of samples the
+/// error is a power of time. 0 if it takes more samples than were measured.
 double embree_ms(const std::vector<Result>& results, double rmse) {
     std::map<std::string, std::vector<std::pair<double, double>>> lines;  // (rmse, ms) by method
     for (const Result& result : results)
@@ -160,7 +161,7 @@ public:
                 if (on_ground[i] < 0.0F) ground_truth[i] = -1.0F;
             const ShadowCase shadow_case{scene, width, height, is_soft, tracer, all, voxels, options_};
             const double before = is_soft ? 0.4 : 0.0;
-            const std::vector<Measured> measured = measure(
+            const std::vector<Measurement> measured = measure(
                 shadow_case, chart_, [&](double part) { done(before + part * (is_soft ? 0.6 : 0.4)); });
             add_rows(shadow_case, {"ground", std::move(ground_truth), true}, measured, truth_error);
             add_rows(shadow_case, {"all", std::move(truth), false}, measured, truth_error);
@@ -168,10 +169,10 @@ public:
     }
 
 private:
-    void add_rows(const ShadowCase& shadow_case, const Judged& judged, const std::vector<Measured>& measured,
-                  double truth_error) {
+    void add_rows(const ShadowCase& shadow_case, const PixelTruth& judged,
+                  const std::vector<Measurement>& measured, double truth_error) {
         std::vector<Result> results;
-        for (const Measured& one : measured)
+        for (const Measurement& one : measured)
             if (judged.is_ground || !one.contender.ground_only)
                 results.push_back({&one, reference::shadow_error(one.runs.shares(), judged.truth)});
         const std::array<const Result*, 2> fastest = {fastest_within_goal(results, true),
@@ -210,7 +211,7 @@ private:
         }
     }
 
-    /// @param ours  else Embree's.
+    /// The fastest result within the goal, or null. @param ours  of our methods; false: of Embree's.
     static const Result* fastest_within_goal(const std::vector<Result>& results, bool ours) {
         const Result* best = nullptr;
         for (const Result& result : results) {
@@ -233,7 +234,7 @@ private:
                            result.error.rmse());
     }
 
-    void tell_goal(const ShadowCase& shadow_case, const Judged& judged,
+    void tell_goal(const ShadowCase& shadow_case, const PixelTruth& judged,
                    const std::array<const Result*, 2>& fastest) {
         const std::string where = fmt::format("{}, {}, RMSE {} at most: ", shadow_case.scene.name(),
                                               judged.is_ground ? "ground" : "all", goal_rmse);

@@ -19,15 +19,15 @@
 namespace cairn::bench {
 namespace {
 
-constexpr int paper_width = 1024;  ///< and three quarters of it
+constexpr int paper_width = 1024;  ///< pixels; the height is three quarters of it
 constexpr int table_2_resolution = 128;
 constexpr int truth_strata = 16;
-/// After a count of rays that took so many times ChartOptions::budget_ms, greater ones are left out.
+/// If a number of rays took this many times ChartOptions::budget_ms, greater numbers are left out.
 constexpr double slow_budgets = 2.5;
 
 struct PaperRow {
     int number;
-    std::array<double, 3> ms;  ///< knot, tree, spheres, on a GeForce 8800 GTX
+    std::array<double, 3> ms;  ///< times of knot, tree and spheres on a GeForce 8800 GTX
 };
 constexpr std::array<const char*, 3> paper_scenes = {"knot", "tree", "spheres"};
 constexpr std::array<PaperRow, 7> table_2 = {{{1, {29, 46, 17}},
@@ -53,7 +53,7 @@ Cell paper_ms(std::span<const PaperRow> table, const std::string& scene, int num
     return row->ms[std::size_t(column - paper_scenes.begin())];
 }
 
-/// A way through voxels of one resolution.
+/// A method to follow rays through voxels of one resolution.
 struct Traversal {
     const char* name;
     renderer::ShadowMethod method;
@@ -75,11 +75,12 @@ Frames frames_of(const Traversal& traversal, const ShadowScene& scene, int resol
         options.shaders);
 }
 
+/// The parameters of a contender. @p table is 2 or 3.
 struct Setting {
     const Traversal* traversal;
     int table, rays, resolution;
 };
-struct Measured {
+struct Measurement {
     Setting setting;
     RepeatedRuns runs;
 };
@@ -100,7 +101,7 @@ public:
 
     void measure_scene(const std::string& path, const std::function<void(double)>& done) {
         const ShadowScene scene(path, false);
-        std::vector<Measured> all;
+        std::vector<Measurement> all;
         for (const Traversal& traversal : traversals) {
             add_table_2(scene, traversal, all);
             for (const int resolution : resolutions_of(table_3))
@@ -108,7 +109,7 @@ public:
                     all);
         }
         done(0.4);
-        for (Measured& one : all)
+        for (Measurement& one : all)
             one.runs.sweep(options_.runs, options_.budget_ms);
         done(0.8);
         add_rows(scene, all);
@@ -123,9 +124,9 @@ private:
         return all;
     }
 
-    /// @param setting  0 rays: a frame without shadows.
+    /// Adds a contender. @param setting  with 0 rays: a frame without shadows.
     void add(const ShadowScene& scene, const Setting& setting, const Frames& frames,
-             std::vector<Measured>& all) const {
+             std::vector<Measurement>& all) const {
         renderer::View view = scene.view(width_, height_, std::max(setting.rays, 1));
         view.detail.pixel_error = always_finest;
         if (setting.rays == 0) view.shadow.kind = renderer::ShadowQuality::Kind::none;
@@ -134,7 +135,7 @@ private:
         all.push_back({setting, std::move(runs)});
     }
 
-    void add_table_2(const ShadowScene& scene, const Traversal& traversal, std::vector<Measured>& all) {
+    void add_table_2(const ShadowScene& scene, const Traversal& traversal, std::vector<Measurement>& all) {
         const int resolution =
             options_.resolutions.empty() ? table_2_resolution : options_.resolutions.back();
         const Frames frames = frames_of(traversal, scene, resolution, options_);
@@ -150,7 +151,7 @@ private:
         }
     }
 
-    void add_rows(const ShadowScene& scene, const std::vector<Measured>& all) {
+    void add_rows(const ShadowScene& scene, const std::vector<Measurement>& all) {
         const renderer::View view = scene.view(width_, height_, 1);
         const reference::ImageTracer tracer(scene.scene(), scene.all());
         const reference::ShadowQuestion question{
@@ -163,10 +164,10 @@ private:
         const std::vector<float> soft =
             soft_shares(tracer, question, receivers, sampling, options_.truth_cache).shares;
         std::map<std::pair<std::string, int>, double> by_rays;
-        for (const Measured& one : all)
+        for (const Measurement& one : all)
             if (one.setting.table == 2)
                 by_rays[{one.setting.traversal->name, one.setting.rays}] = one.runs.ms();
-        for (const Measured& one : all) {
+        for (const Measurement& one : all) {
             const Setting& setting = one.setting;
             if (setting.rays == 0) continue;
             const double unshadowed_ms = by_rays.at({setting.traversal->name, 0});
@@ -212,7 +213,7 @@ private:
 
     Chart& chart_;
     const ChartOptions& options_;
-    int width_, height_;  ///< pixels
+    int width_, height_;  ///< size of the picture in pixels
 };
 
 }  // namespace

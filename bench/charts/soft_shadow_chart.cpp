@@ -1,6 +1,6 @@
 // Atty et al. 2005, sections 4.2 and 5.2: the error of soft shadow maps over the size of the occluder map,
-// the size of the light, and where the occluder is; their time over polygons, map and light; and appendix A,
-// what the sums are kept in.
+// the size of the light, and where the occluder is; their time over polygons, map and light; and the
+// formats of the sums (appendix A).
 #include <array>
 #include <cmath>
 #include <deque>
@@ -23,11 +23,16 @@ using renderer::ShadowMesh;
 using renderer::ShadowPasses;
 using renderer::SoftShadowMap;
 
-constexpr int own_base = 128;           // texels a side of the occluder map, where it is not what varies
-constexpr int most_points = 48;         // a side
-constexpr double contender_ms = 200.0;  // no further run of a contender once it has taken so long
-constexpr double base_light = 0.5;      // wide
-constexpr double closest_gap = 0.02;    // to the light, of the way that the occluder can rise
+/// Texels per side of the occluder map if its size does not vary.
+constexpr int own_base = 128;
+/// Points per side of the floor that are compared.
+constexpr int most_points = 48;
+/// Milliseconds after which a contender is not run again.
+constexpr double contender_ms = 200.0;
+/// Width of the light if it does not vary.
+constexpr double base_light = 0.5;
+/// The least gap to the light, as a share of the height that the occluder can rise.
+constexpr double closest_gap = 0.02;
 
 constexpr std::array own_sizes = {16, 24, 32, 48, 64, 96, 128, 160, 200, 256, 320, 512};
 constexpr std::array own_format_sizes = {64, 128, 256, 512};
@@ -57,20 +62,20 @@ struct Plan {
 
 /// A placement with its truth.
 struct Case {
-    Case(const ShadowOccluder& occluder, const ShadowPlacement& placement) : setting(occluder, placement) {}
-    StudySetting setting;
+    Case(const ShadowOccluder& occluder, const ShadowPlacement& placement) : study(occluder, placement) {}
+    StudyCase study;
     ShadowPoints points;
     std::vector<double> truth;
 };
 
 struct Contender {
     double parameter = 0.0;
-    const Case* placed = nullptr;
+    const Case* study_case = nullptr;
     int occluder_size = 0;
     ShadowPasses passes = ShadowPasses::two;
     ShadowFormat format = ShadowFormat::fp32;
     StudyWindow window = StudyWindow::fitted;
-    const ShadowMesh* mesh = nullptr;  ///< none: the occluder's own
+    const ShadowMesh* mesh = nullptr;  ///< null: the occluder's mesh
     SoftShadowErrors errors{};
     renderer::SoftShadowStatistics statistics{};
     std::vector<double> samples_ms{};
@@ -98,7 +103,7 @@ public:
           chart_(chart),
           tracer_(occluder.scene(), occluder.snapshot()),
           mesh_(occluder.scene(), occluder.snapshot()),
-          base_(placed({base_light, 0.0, occluder.own_gap()})) {}
+          base_(case_of({base_light, 0.0, occluder.default_gap()})) {}
 
     using Step = void (OccluderStudies::*)();
     static constexpr std::array<Step, 6> steps() {
@@ -112,7 +117,7 @@ private:
     void over_sizes() {
         std::vector<Contender> contenders;
         for (const int size : plan_.sizes)
-            add_ways(size, base_, size, contenders);
+            add_passes(size, base_, size, contenders);
         measure("resolution", contenders);
     }
 
@@ -120,11 +125,11 @@ private:
         std::deque<Case> cases;
         std::vector<Contender> contenders;
         for (const double width : light_widths) {
-            const Case& now = cases.emplace_back(placed({width, 0.0, occluder_.own_gap()}));
-            add_ways(width, now, plan_.base, contenders);
+            const Case& now = cases.emplace_back(case_of({width, 0.0, occluder_.default_gap()}));
+            add_passes(width, now, plan_.base, contenders);
             for (const int size : {plan_.base / 2, plan_.base * 2})
-                if (size > 0 && size <= 2048)
-                    contenders.push_back({.parameter = width, .placed = &now, .occluder_size = size});
+                if (size > 0 && size <= renderer::max_shadow_map_size)
+                    contenders.push_back({.parameter = width, .study_case = &now, .occluder_size = size});
         }
         measure("light-size", contenders);
     }
@@ -133,8 +138,8 @@ private:
         std::deque<Case> cases;
         std::vector<Contender> contenders;
         for (const double lateral : laterals)
-            add_ways(lateral, cases.emplace_back(placed({base_light, lateral, occluder_.own_gap()})),
-                     plan_.base, contenders);
+            add_passes(lateral, cases.emplace_back(case_of({base_light, lateral, occluder_.default_gap()})),
+                       plan_.base, contenders);
         measure("lateral", contenders);
     }
 
@@ -143,7 +148,7 @@ private:
         std::vector<Contender> contenders;
         for (const double rise : rises) {
             const double gap = rise * (study_light_height - occluder_.height());
-            add_ways(rise, cases.emplace_back(placed({base_light, 0.0, gap})), plan_.base, contenders);
+            add_passes(rise, cases.emplace_back(case_of({base_light, 0.0, gap})), plan_.base, contenders);
         }
         measure("vertical", contenders);
     }
@@ -154,7 +159,7 @@ private:
             for (const ShadowFormat format :
                  {ShadowFormat::fp16, ShadowFormat::fp16_batches, ShadowFormat::fp32})
                 contenders.push_back({.parameter = double(size),
-                                      .placed = &base_,
+                                      .study_case = &base_,
                                       .occluder_size = size,
                                       .passes = ShadowPasses::one,
                                       .format = format});
@@ -162,7 +167,7 @@ private:
         measure("format", contenders);
     }
 
-    /// The same shape, so the same shadow, of ever more triangles.
+    /// One shape, and so one shadow, of a rising number of triangles.
     void over_polygons() {
         const auto own = double(mesh_.triangle_count());
         std::deque<ShadowMesh> meshes;
@@ -175,34 +180,33 @@ private:
             const ShadowOccluder finer = occluder_.cut(parts);
             const ShadowMesh& mesh = meshes.emplace_back(finer.scene(), finer.snapshot());
             contenders.push_back({.parameter = double(mesh.triangle_count()),
-                                  .placed = &base_,
+                                  .study_case = &base_,
                                   .occluder_size = plan_.base,
                                   .mesh = &mesh});
         }
         if (contenders.empty())
-            contenders.push_back({.parameter = own, .placed = &base_, .occluder_size = plan_.base});
+            contenders.push_back({.parameter = own, .study_case = &base_, .occluder_size = plan_.base});
         measure("polygons", contenders);
     }
 
-    /// One and two passes, and one pass with the window of Atty et al.
-    static void add_ways(double parameter, const Case& now, int size, std::vector<Contender>& contenders) {
+    /// Adds three contenders: one and two passes, and one pass with the window of Atty et al.
+    static void add_passes(double parameter, const Case& now, int size, std::vector<Contender>& contenders) {
         for (const auto& [passes, window] : {std::pair(ShadowPasses::one, StudyWindow::fitted),
                                              {ShadowPasses::two, StudyWindow::fitted},
                                              {ShadowPasses::one, StudyWindow::shared}})
             contenders.push_back({.parameter = parameter,
-                                  .placed = &now,
+                                  .study_case = &now,
                                   .occluder_size = size,
                                   .passes = passes,
                                   .window = window});
     }
 
-    Case placed(const ShadowPlacement& placement) {
+    Case case_of(const ShadowPlacement& placement) {
         Case out(occluder_, placement);
         SoftShadowMap& map = map_of(plan_.base, ShadowPasses::one, ShadowFormat::fp32);
-        map.compute(out.setting.light(), out.setting.frustum(StudyWindow::fitted), mesh_,
-                    out.setting.floor());
+        map.compute(out.study.light(), out.study.frustum(StudyWindow::fitted), mesh_, out.study.floor());
         out.points = shadow_points(map);
-        out.truth = truth_at(out.points, tracer_, out.setting.light());
+        out.truth = truth_at(out.points, tracer_, out.study.light());
         return out;
     }
 
@@ -217,7 +221,7 @@ private:
         return found->second;
     }
 
-    /// All in turn, so that ratios hold when the machine's speed drifts.
+    /// Measures the contenders in turn, so that ratios hold if the machine's speed drifts.
     void measure(const char* study, std::vector<Contender>& contenders) {
         for (int run = 0; run < plan_.runs; ++run) {
             for (Contender& contender : contenders) {
@@ -226,14 +230,14 @@ private:
                     spent += ms;
                 if (run > 0 && spent > contender_ms) continue;
                 SoftShadowMap& map = map_of(contender.occluder_size, contender.passes, contender.format);
-                const StudySetting& setting = contender.placed->setting;
-                map.compute(setting.light(), setting.frustum(contender.window),
-                            contender.mesh != nullptr ? *contender.mesh : mesh_, setting.floor());
+                const StudyCase& study = contender.study_case->study;
+                map.compute(study.light(), study.frustum(contender.window),
+                            contender.mesh != nullptr ? *contender.mesh : mesh_, study.floor());
                 contender.samples_ms.push_back(map.statistics().milliseconds);
                 if (run > 0) continue;
                 contender.statistics = map.statistics();
-                contender.errors =
-                    soft_shadow_errors(map.visible(), contender.placed->points, contender.placed->truth);
+                contender.errors = soft_shadow_errors(map.visible(), contender.study_case->points,
+                                                      contender.study_case->truth);
             }
         }
         for (const Contender& contender : contenders)
@@ -247,7 +251,7 @@ private:
              std::int64_t(plan_.receiver_size), std::int64_t(contender.passes == ShadowPasses::two ? 2 : 1),
              std::string(name_of(contender.format)),
              std::string(contender.window == StudyWindow::shared ? "shared" : "fitted"),
-             contender.placed->setting.placement().light_width, std::int64_t(mesh.triangle_count()),
+             contender.study_case->study.placement().light_width, std::int64_t(mesh.triangle_count()),
              contender.errors.mean, contender.errors.rmse, contender.errors.greatest,
              std::int64_t(contender.errors.shadowed), std::int64_t(contender.errors.wrong),
              median(contender.samples_ms), std::int64_t(contender.statistics.micro_patches),

@@ -21,8 +21,8 @@ namespace {
 constexpr int picture = 256;
 constexpr double inner = 0.25;
 constexpr double outer = 0.30;
-constexpr double optical_depth = 1.0;  // of density 1, through a voxel: opaque after a few
-/// Along the axis through the middle of the cube [0, 1]^3, looking at larger ones.
+constexpr double optical_depth = 1.0;  // depth of density 1 per voxel: opaque after a few voxels
+/// Places of the eye on the axis through the middle of the cube [0, 1]^3. It looks towards greater ones.
 constexpr std::array places = {0.5, 0.0, -0.5, -1.0};
 constexpr double place_of_shapes = -0.5;
 
@@ -75,7 +75,7 @@ public:
         shapes_.clear();
         for (const int n : {2, 4, 8}) {
             for (const int m : {8, 16, 32, 64}) {
-                // Without levels, N says nothing.
+                // N does not matter if the tree has no levels.
                 if (!fits(n, m) || (m == resolution_ && n > 2)) continue;
                 shapes_.push_back({n, m, renderer::Traversal::mini_stack});
                 contenders.emplace_back(make(n, m, renderer::Traversal::mini_stack), view);
@@ -93,11 +93,11 @@ private:
     [[nodiscard]] bool fits(int n, int m) const {
         return m <= resolution_ && renderer::tree_shape_of(options_of(n, m)).resolution() == resolution_;
     }
-    /// With N = 4.
+    /// The least M with which a tree with N = 4 has exactly the resolution.
     [[nodiscard]] int least_m() const {
         for (const int m : {8, 16, 32, 64})
             if (fits(4, m)) return m;
-        throw Error(Fault::usage, "--resolutions", fmt::format("no tree has {} voxels a side", resolution_),
+        throw Error(Fault::usage, "--resolutions", fmt::format("no tree has {} voxels per side", resolution_),
                     "choose powers of two from 8 to 32768");
     }
     [[nodiscard]] renderer::TreeOptions options_of(int n, int m) const {
@@ -155,7 +155,7 @@ private:
     int resolution_;
     Chart& chart_;
     RegularGrid grid_;
-    std::vector<Shape> shapes_;  // of the contenders
+    std::vector<Shape> shapes_;  // one per contender
 };
 
 }  // namespace

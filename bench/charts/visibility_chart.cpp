@@ -1,5 +1,5 @@
-// What has to be produced for a first frame, by who decides: the rays that ask, occlusion queries on the
-// tiles in the frustum (Crassin 2007, section 3.6), or the frustum alone.
+// The bricks that are produced for a first frame if rays report what they miss, if occlusion queries on the
+// tiles in the frustum decide (Crassin 2007, section 3.6), and if the frustum decides alone.
 #include <array>
 #include <functional>
 #include <utility>
@@ -16,12 +16,12 @@ namespace cairn::bench {
 namespace {
 
 constexpr int own_size = 256;
-constexpr double nearest = 0.25;  // of the distance from which the whole is seen
+constexpr double nearest = 0.25;  // share of the distance from which the whole is seen
 constexpr std::size_t most_pool_bytes = std::size_t(2) << 30U;
 
 constexpr std::size_t sample_pool_bytes = std::size_t(4) << 20U;
 
-/// What a scheme came to in one run.
+/// Figures of a scheme in one run.
 struct Outcome {
     std::uint64_t produced = 0;
     std::uint64_t used = 0;
@@ -31,7 +31,7 @@ struct Outcome {
     double milliseconds = 0.0;
 };
 
-/// From the end of the longest level axis, low in the scene, through the length of it: much stands behind
+/// A view along the longest horizontal axis, from its end and low in the scene, so that much is hidden behind
 /// other things.
 renderer::View through(const scenes::Bounds& bounds, renderer::View view) {
     const glm::dvec3 size = bounds.high - bounds.low;
@@ -49,8 +49,8 @@ public:
         : options_(options), case_(frame_case), size_(size), chart_(chart) {}
 
     void compare(const char* name, renderer::View view) {
-        view.shadow.kind =
-            renderer::ShadowQuality::Kind::none;  // who tests boxes from the eye knows nothing of the light
+        // Tests of boxes from the eye say nothing about shadow rays.
+        view.shadow.kind = renderer::ShadowQuality::Kind::none;
         pool_bytes_ = bytes_for_frustum(view);
         auto queries = [&](bool overlapped) {
             return [=, this] { return of(bricks(view)->by_queries({.overlapped = overlapped})); };
@@ -89,7 +89,8 @@ private:
 
     [[nodiscard]] renderer::TreeOptions tree() const { return case_.fitted(options_.voxels.tree()); }
 
-    /// A pool for all that could be produced, if there can be one; no larger, since drivers clear them.
+    /// Bytes of a pool for all bricks that could be produced, if the driver allows one. It is no larger,
+    /// because drivers clear pools.
     [[nodiscard]] std::size_t bytes_for_frustum(const renderer::View& view) const {
         const renderer::TreeShape shape = case_.shape(tree());
         const std::unique_ptr<renderer::Content> content = case_.content(tree(), options_.shaders);
@@ -125,7 +126,7 @@ private:
     const ChartOptions& options_;
     const FrameCase& case_;
     int size_;
-    std::size_t pool_bytes_ = 0;  // for the view
+    std::size_t pool_bytes_ = 0;  // bytes of the brick pool for the view
     Chart& chart_;
 };
 

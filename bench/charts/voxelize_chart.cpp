@@ -19,14 +19,14 @@
 namespace cairn::bench {
 namespace {
 
-/// Up to here the slow exact reference is the truth. Beyond, the CPU's row spans are, once the same run has
-/// found no voxel of theirs missing or extra in this scene.
+/// Up to this resolution the slow exact reference is the truth. Beyond it, the CPU's row spans are, provided
+/// that the same run has found none of their voxels missing or extra in this scene.
 constexpr int largest_reference = 512;
 constexpr int smallest_pyramid = 512;
-/// A contender that needed longer than this for one run is left out at higher resolutions.
+/// A contender that took longer than this for one run is left out at higher resolutions.
 constexpr double longest_run_ms = 10000.0;
 
-/// What is measured of one contender at one resolution.
+/// Figures of one contender at one resolution.
 struct Result {
     std::vector<double> samples_ms;
     double spent_ms = 0.0;
@@ -68,7 +68,7 @@ private:
         std::vector<Result> results(all.size());
         for (std::size_t i = 0; i < all.size(); ++i)
             first_run(all[i], results[i], truth, scene);
-        // In turn, so that ratios hold when the machine's speed drifts.
+        // Contenders run in turn, so that ratios hold if the machine's speed drifts.
         for (int run = 0; run < options_.runs; ++run) {
             for (std::size_t i = 0; i < all.size(); ++i)
                 run_again(all[i], results[i]);
@@ -101,8 +101,8 @@ private:
         return truth;
     }
 
-    /// Compiles what is compiled at the first use, and compares. The time counts only where there is none to
-    /// spare for a second run.
+    /// The first run, which compiles programs, and the comparison with the truth. Its time counts only if
+    /// there is no time for a second run.
     void first_run(const VoxelContender& contender, Result& result, const voxelizer::BitGrid& truth,
                    const std::string& scene) {
         try {
@@ -164,7 +164,7 @@ private:
     VoxelContenders contenders_;
     std::string driver_;
     std::int64_t threads_ = std::int64_t(std::thread::hardware_concurrency());
-    std::map<std::string, std::pair<int, double>> last_ms_;  ///< of a contender: resolution, time
+    std::map<std::string, std::pair<int, double>> last_ms_;  ///< resolution and time of each contender
     bool row_spans_exact_ = false;
 };
 

@@ -17,7 +17,7 @@ glm::vec3 per_unit(const glm::vec3& axis) {
     return glm::vec3(axis) / glm::dot(glm::vec3(axis), glm::vec3(axis));
 }
 
-/// What DrawStateGuard leaves alone.
+/// State that DrawStateGuard does not restore: set for the tests, then reset to the defaults.
 class ReversedDepth {
 public:
     ReversedDepth() {
@@ -64,7 +64,7 @@ BoxTests::BoxTests(const interop::MarchView& view, const gl::ShaderSource& shade
 }
 
 void BoxTests::set_depths(std::span<const float> inverse_depths) {
-    // Nearer than a voxel all is as near: boxes are clamped likewise.
+    // Depths under a voxel count as one voxel. Boxes are clamped in the same way.
     std::vector<float> clamped(inverse_depths.begin(), inverse_depths.end());
     for (float& depth : clamped)
         depth = std::min(depth, 1.0F);
@@ -72,7 +72,7 @@ void BoxTests::set_depths(std::span<const float> inverse_depths) {
                         clamped.data());
 }
 
-/// From the eye, and larger.
+/// The box relative to the eye, enlarged.
 Box BoxTests::around(const Box& box) const {
     const glm::dvec3 low = box.low - eye_;
     const glm::dvec3 high = box.high - eye_;
@@ -96,7 +96,7 @@ std::size_t BoxTests::begin(std::span<const Box> boxes) {
     for (const Box& box : boxes) {
         const Box near = around(box);
         queries_.emplace_back();
-        // From inside, the near faces are behind the eye, and the far ones may be hidden.
+        // If the eye is inside, near faces are behind it, and far ones may be hidden.
         if (glm::all(glm::lessThan(near.low, glm::dvec3(0.0))) &&
             glm::all(glm::greaterThan(near.high, glm::dvec3(0.0)))) {
             continue;

@@ -14,24 +14,24 @@
 
 namespace cairn::bench {
 
-/// OpenGL's occlusion queries against the depths at which a picture's rays have become opaque: does a box
-/// reach into what may still be seen (Crassin 2007, section 3.6.1)?
+/// OpenGL's occlusion queries against the depths at which a picture's rays have become opaque: is a
+/// part of a box in front of them (Crassin 2007, section 3.6.1)?
 ///
-/// Boxes are drawn a 64th of a pixel larger than they are. Rasterizers round corners to 256ths, and a ray
-/// that only just comes through a box must not be missed.
+/// Boxes are drawn larger by a 64th of a pixel, because rasterizers round corners to 256ths, and a ray that
+/// only just goes through a box must not be missed.
 class BoxTests {
 public:
-    /// Rays that start at the view's eye.
+    /// @param view  a view whose rays start at its eye.
     BoxTests(const interop::MarchView& view, const gl::ShaderSource& shaders);
 
-    /// @param inverse_depths  1 / depth along the view in voxels, of each pixel, row 0 at the top; 0 where
-    /// rays get through. Tests that begin() has started go by the depths before.
+    /// @param inverse_depths  1 / depth along the view in voxels, per pixel, row 0 at the top; 0 where the
+    /// ray has not become opaque. Tests that begin() has started already use the depths before.
     void set_depths(std::span<const float> inverse_depths);
 
-    /// Starts a test of each box, and does not wait for any. Boxes in voxels of the finest level.
-    /// @return  how many it took: boxes around the eye are visible in any case.
+    /// Starts a test of each box, and waits for none. Boxes are in voxels of the finest level.
+    /// @return  the number of tests; boxes around the eye need none, because they are visible in any case.
     std::size_t begin(std::span<const renderer::Box> boxes);
-    /// Of the tests that were started last, waiting for them where need be.
+    /// The results of the tests that were started last, per box. Waits for them if need be.
     [[nodiscard]] std::vector<bool> visible() const;
 
 private:
@@ -42,12 +42,12 @@ private:
     glm::vec3 across_;
     glm::vec3 down_;
     glm::ivec2 size_;
-    double pixel_ = 0.0;  // width at distance 1
+    double pixel_ = 0.0;  // width of a pixel at distance 1
     gl::Program program_;
     gl::TextureHandle depths_;
     gl::FramebufferHandle target_;
     gl::VertexArrayHandle no_attributes_;
-    std::vector<gl::QueryHandle> queries_;  // of the boxes begun last; none where the eye is inside
+    std::vector<gl::QueryHandle> queries_;  // one per box of the last begin(); empty if the eye is inside
 };
 
 }  // namespace cairn::bench

@@ -19,7 +19,7 @@ using voxelizer::Region;
 using voxelizer::Surface;
 using voxelizer::SurfaceChunk;
 
-/// Clears and fills so many bytes at a time: the cache of one core.
+/// Bytes that are cleared and filled at a time: they fit the cache of one core.
 constexpr std::size_t slab_bytes = std::size_t(256) << 10;
 constexpr std::size_t block_triangles = 4096;
 
@@ -47,7 +47,7 @@ void set_bits(std::uint32_t* row, int first, int last) {
     *end |= tail;
 }
 
-/// A triangle of a chunk, for each slab that it reaches.
+/// For each slab, the triangles of a chunk that reach it.
 class SlabLists {
 public:
     SlabLists(const SurfaceChunk& chunk, const Region& region, int slab_slices)
@@ -111,7 +111,7 @@ private:
     std::vector<std::uint32_t> triangles_;
 };
 
-/// Marks what lies in the slices from first to last of the region.
+/// Marks voxels in some slices of the region.
 class SlabMarker {
 public:
     SlabMarker(const Surface& surface, const Region& region, BitGrid& bits, Span slices)
@@ -147,8 +147,8 @@ public:
     }
 
 private:
-    /// A triangle whose box is one voxel wide along two axes touches every voxel of the box, for it is
-    /// connected. Most are of that kind where triangles are smaller than voxels.
+    /// Marks a triangle whose box is one voxel wide along two axes. It is connected, so it touches every
+    /// voxel of the box. Most triangles are like that if they are smaller than voxels.
     bool mark_line(const std::array<glm::ivec3, 3>& p, int shift) {
         const glm::ivec3 low = low_voxel(p, shift);
         const glm::ivec3 high = high_voxel(p, shift);
@@ -165,7 +165,7 @@ private:
         return true;
     }
 
-    /// @param whole_rows  every voxel of a row passes
+    /// @param whole_rows  true if every voxel of a row passes
     template <typename Passes>
     void mark(const RowSpans& spans, const Passes& passes, bool whole_rows) {
         const glm::ivec3 low = region_.origin;

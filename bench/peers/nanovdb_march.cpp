@@ -15,7 +15,7 @@ namespace {
 using Ray = nanovdb::Ray<float>;
 using Vec = nanovdb::Vec3<float>;
 
-/// Voxels that a shadow ray starts off the surface, not to meet it again.
+/// Distance in voxels at which a shadow ray starts from the surface, so as not to meet it again.
 constexpr float shadow_gap = 3.0F;
 
 Vec vec(const glm::dvec3& v) {

@@ -10,10 +10,10 @@
 
 namespace cairn::bench {
 
-/// A picture's rays in voxels of a grid, from its low corner.
+/// A picture's rays in voxels of a grid, relative to the grid's low corner.
 struct GridView {
     glm::dvec3 eye{0.0};
-    glm::dvec3 forward{0.0, 0.0, -1.0};  ///< unit
+    glm::dvec3 forward{0.0, 0.0, -1.0};  ///< unit vector
     glm::dvec3 right{1.0, 0.0, 0.0};     ///< half the picture's width at distance 1
     glm::dvec3 up{0.0, 1.0, 0.0};        ///< half the picture's height at distance 1
     glm::dvec3 towards_light{0.0, 1.0, 0.0};
@@ -34,7 +34,7 @@ public:
 
     struct Result {
         double milliseconds = 0.0;
-        std::vector<std::uint8_t> hit;  ///< a pixel: 0 nothing, 1 in shadow, 2 lit
+        std::vector<std::uint8_t> hit;  ///< per pixel: 0 nothing, 1 in shadow, 2 lit
     };
     [[nodiscard]] Result march(const GridView& view) const;
 

@@ -60,7 +60,7 @@ VisibleBricks::VisibleBricks(std::unique_ptr<renderer::Content> content, const r
       saturate_(shape, cache_.content().has_color(), {}, shaders, saturating()),
       picture_(shape, cache_.content().has_color(), {}, shaders),
       boxes_(view_, shaders) {
-    draw();  // once, so that no shader is compiled while the clock runs
+    draw();  // compiles shaders before anything is timed
 }
 
 void VisibleBricks::begin() {
@@ -86,22 +86,23 @@ void VisibleBricks::load(Tiles tiles) {
     ++result_.batches;
 }
 
-/// (Without new bricks, the picture is as it was.)
+/// Does not draw if there are no new bricks, because the picture stays the same.
 void VisibleBricks::load_and_draw(Tiles tiles) {
     load(tiles);
     if (!tiles.empty()) draw();
 }
 
-/// Rounds of the marchers alone: bricks stay as they are, for one decision needs no room.
+/// Advances the round for the marchers alone. No brick is evicted, because the pool holds all bricks of one
+/// decision.
 renderer::PassResult VisibleBricks::march(renderer::Marcher& marcher, PassKind kind) {
     round_ = round_.next();
     return marcher.run_pass(round_, cache_.tree(), cache_.pool(), kind);
 }
 
-/// Marches the picture through what is there, for the depths where its rays end.
+/// Marches the picture through the bricks that are there, and reads the depths where rays end.
 void VisibleBricks::draw() {
     interop::MarchView view = view_;
-    view.background_pixel = 0;  // rays get through where nothing is
+    view.background_pixel = 0;  // rays that meet nothing get through
     saturate_.begin_frame(view, cache_.tree(), cache_.pool(), false);
     while (!march(saturate_, PassKind::stand_in).done()) {
     }
@@ -126,7 +127,8 @@ std::vector<ViewTile> VisibleBricks::visible_of(Tiles tested) const {
     return tiles;
 }
 
-/// The picture, and what its rays read and miss: the check that nothing visible was left out.
+/// Renders the picture, and counts the bricks that its rays read and miss: a check that no visible brick was
+/// left out.
 void VisibleBricks::show() {
     picture_.begin_frame(view_, cache_.tree(), cache_.pool(), false);
     renderer::PassResult pass;
@@ -161,7 +163,7 @@ Visibility VisibleBricks::by_queries(const QuerySchedule& schedule) {
     };
     std::vector<ViewTile> to_load;
     if (schedule.overlapped) {
-        const Tiles untested = take(schedule.tests * schedule.loads_a_test);
+        const Tiles untested = take(schedule.tests * schedule.loads_per_test);
         to_load.assign(untested.begin(), untested.end());
     }
     Tiles under_test = take(schedule.tests);
@@ -176,7 +178,7 @@ Visibility VisibleBricks::by_queries(const QuerySchedule& schedule) {
             to_load.clear();
         }
         const double visible = double(to_load.size());
-        under_test = take(std::max(visible / schedule.loads_a_test, double(schedule.tests)));
+        under_test = take(std::max(visible / schedule.loads_per_test, double(schedule.tests)));
         test(under_test);
     }
     show();

@@ -11,7 +11,7 @@
 namespace cairn::bench {
 
 struct OpenVdbMesh::Mesh {
-    std::vector<openvdb::Vec3s> points;  ///< the library's voxel i has its centre at i
+    std::vector<openvdb::Vec3s> points;  ///< voxel i of the library has its centre at i
     std::vector<openvdb::Vec3I> triangles;
 };
 
@@ -26,7 +26,7 @@ OpenVdbMesh::OpenVdbMesh(const std::vector<glm::vec3>& points, const std::vector
 }
 
 double OpenVdbMesh::convert(voxelizer::BitGrid* voxels) const {
-    // These types are those that the library itself was built for.
+    // The library is built for these types.
     const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> mesh(mesh_->points,
                                                                                           mesh_->triangles);
     const openvdb::math::Transform::Ptr one_voxel = openvdb::math::Transform::createLinearTransform(1.0);

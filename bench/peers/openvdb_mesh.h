@@ -10,17 +10,17 @@
 
 namespace cairn::bench {
 
-/// OpenVDB's meshToVolume: the peer that users of volumes have at hand. It computes distances, so a voxel
-/// counts as occupied where its centre is within half a voxel's diagonal of the surface: of all radii the
-/// least that misses no voxel, and about 15% too many on a smooth surface.
+/// OpenVDB's meshToVolume, the tool that users of volumes have at hand. It computes distances, so a voxel
+/// counts as occupied if its centre is within half a voxel's diagonal of the surface. This is the least
+/// radius that misses no voxel; it marks about 15% too many on a smooth surface.
 class OpenVdbMesh {
 public:
-    /// @param points     in voxels; voxel i spans [i, i + 1]
-    /// @param triangles  numbers of points
+    /// @param points     vertices in voxels; voxel i spans [i, i + 1]
+    /// @param triangles  indices into `points`
     OpenVdbMesh(const std::vector<glm::vec3>& points, const std::vector<glm::uvec3>& triangles);
 
-    /// Unsigned distances in the narrowest band that the library keeps.
-    /// @param voxels  receives what is occupied of its own size from voxel 0 on, if not null.
+    /// Computes unsigned distances in the narrowest band that the library keeps.
+    /// @param voxels  receives the occupied voxels of its own size from voxel 0 on, if not null.
     /// @return        milliseconds of the conversion alone, on all cores
     double convert(voxelizer::BitGrid* voxels) const;
 

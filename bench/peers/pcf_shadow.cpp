@@ -21,7 +21,7 @@ namespace {
 constexpr unsigned group_size = 64;
 constexpr double near_margin = 0.999;
 
-/// Of ShadowMesh's vertices and materials, whose numbers stand before it.
+/// The vertex shader, for vertices and materials of ShadowMesh, whose numbers are prepended.
 constexpr const char* vertex_text = R"(
 layout(location = ATTRIBUTE_SHADOW_POSITION) in vec3 position;
 layout(location = ATTRIBUTE_SHADOW_COLOR) in vec4 color;
@@ -47,13 +47,13 @@ void main() {
 }
 )";
 
-/// Places are told by t, where they are on the map's plane, and q, of which depth is a linear function: x /
-/// z, y / z and 1 / z of a light that is somewhere, x, y and z of one at infinity. Then a plane of the scene
-/// is a plane of (t, q), and a light of half size h, seen past a blocker, is h |q of the blocker - q| wide in
-/// t.
+/// Places are given by t, their place on the map's plane, and q, of which depth is a linear function: t = (x
+/// / z, y / z) and q = 1 / z for a positional light, t = (x, y) and q = z for a light at infinity. Then a
+/// plane of the scene is a plane of (t, q), and a light of half size h, seen past a blocker, is h |q of the
+/// blocker - q| wide in t.
 constexpr const char* evaluate_text = R"(
 layout(local_size_x = GROUP_SIZE) in;
-layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };  // light space
+layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };  // in light space
 layout(std430, binding = 1) readonly buffer Normals { vec4 normals[]; };
 layout(std430, binding = 2) writeonly buffer Shares { float shares[]; };
 layout(binding = 0) uniform sampler2DShadow lit_map;
@@ -62,13 +62,13 @@ uniform int count;
 uniform int kernel;
 uniform vec4 window;        // low and high t
 uniform vec4 depth_and_q;   // depth = x + y q; z: q of the nearest caster; w: 1 for a light at infinity
-uniform vec4 half_and_texel;  // of the light; of the map, in t
+uniform vec4 half_and_texel;  // half size of the light; size of a texel in t
 
 vec2 uv_of(vec2 t) { return (t - window.xy) / (window.zw - window.xy); }
 float depth_of(float q) { return depth_and_q.x + depth_and_q.y * q; }
 vec2 tap_of(int i) { return (vec2(i % kernel, i / kernel) + 0.5) / float(kernel) * 2.0 - 1.0; }
 
-// What of kernel^2 taps within +- width is lit.
+// The share of kernel^2 taps within +- width that is lit.
 float filtered(vec2 t, float q, vec2 q_slope, vec2 width) {
     float sum = 0.0;
     for (int i = 0; i < kernel * kernel; ++i) {
@@ -79,7 +79,7 @@ float filtered(vec2 t, float q, vec2 q_slope, vec2 width) {
 }
 
 #if IS_PENUMBRA
-// The light that is seen through the plane of the nearest caster is where blockers can be.
+// Blockers are searched in the part of the map that the light covers on the plane of the nearest caster.
 float soft(vec2 t, float q, vec2 q_slope) {
     const vec2 search = max(half_and_texel.xy * abs(depth_and_q.z - q), half_and_texel.zw);
     float sum = 0.0;
@@ -154,7 +154,7 @@ gl::Program evaluate_program(PcfFilter filter) {
     return link(shaders);
 }
 
-/// Looks along +z, x along the light's half_u where it has one.
+/// Light space: the light looks along +z; x is along its half_u if it has one.
 glm::dmat4 light_space(const optics::Light& light, const glm::dvec3& target) {
     const bool is_flat = light.positional && light.shape != optics::LightShape::sphere;
     glm::dvec3 forward = light.positional ? target - light.position : -light.towards;
@@ -175,7 +175,7 @@ glm::dmat4 light_space(const optics::Light& light, const glm::dvec3& target) {
 
 glm::dvec2 half_of(const optics::Light& light) {
     if (!light.positional) return glm::dvec2(std::tan(light.angle));
-    // A square of the same area stands for what is round.
+    // A round light is replaced by a square of the same area.
     const double square = 0.5 * std::sqrt(std::numbers::pi);
     if (light.shape == optics::LightShape::sphere) return glm::dvec2(square * light.radius);
     const glm::dvec2 half(glm::length(light.half_u), glm::length(light.half_v));
@@ -278,8 +278,8 @@ const PcfShadow::Map& PcfShadow::map_of(int size) {
     return map;
 }
 
-/// No face is culled: open surfaces throw shadows from either side. What is nearer than all casters is kept,
-/// at the nearest depth.
+/// No face is culled, because open surfaces cast shadows from either side. Fragments nearer than all casters
+/// are kept at the nearest depth.
 void PcfShadow::draw(const Map& map, const PcfOptions& options) const {
     const gl::DrawStateGuard guard;
     glm::dmat4 clip(0.0);
@@ -337,7 +337,7 @@ void PcfShadow::evaluate(const Map& map, const PcfOptions& options) const {
 
 PcfShadow::Result PcfShadow::shadow(const PcfOptions& options) {
     if (options.map_size < 1 || options.map_size > 16384 || options.kernel < 1 || options.kernel > 64)
-        throw Error(Fault::usage, "shadow map", "1 to 16384 texels a side, and 1 to 64 taps an axis");
+        throw Error(Fault::usage, "shadow map", "1 to 16384 texels per side, and 1 to 64 taps per axis");
     const Map& map = map_of(options.map_size);
     glFinish();
     const auto start = std::chrono::steady_clock::now();

@@ -7,16 +7,16 @@
 
 namespace cairn::bench {
 
-/// An Embree scene whose triangles stay and whose vertices are written anew for each frame. Lines, points and
-/// triangles without indices are left out.
+/// An Embree scene whose triangles stay the same and whose vertices are written for each frame. Lines, points
+/// and triangles without indices are left out.
 class RebuiltTree {
 public:
     /// @throws Error (Fault::memory) if Embree cannot hold the triangles.
     RebuiltTree(const scenes::Snapshot& snapshot, RTCBuildQuality quality);
 
-    /// @param snapshot  of the same scene at another moment
+    /// Writes the vertices. @param snapshot  the same scene at another moment
     void write(const scenes::Snapshot& snapshot);
-    /// Builds the tree of what was written last.
+    /// Builds the tree of the vertices that were written last.
     void build() const;
 
 private:

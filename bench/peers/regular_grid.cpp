@@ -19,13 +19,13 @@ constexpr const char* text = R"(#version 450 core
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler3D densities;
 layout(std430, binding = 0) writeonly buffer Picture { float alpha[]; };
-uniform vec3 eye;  // in sides of the grid, from its low corner
+uniform vec3 eye;  // relative to the low corner of the grid, in units of its side
 uniform vec3 forward;
 uniform vec3 right;
 uniform vec3 up;
 uniform ivec2 size;
 uniform int voxels;
-uniform float extinction;  // a side of the grid
+uniform float extinction;  // per side of the grid
 
 void main() {
     const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

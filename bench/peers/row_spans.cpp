@@ -16,8 +16,8 @@ std::int64_t ceil_divide(std::int64_t numerator, std::int64_t positive_divisor) 
     return -floor_divide(-numerator, positive_divisor);
 }
 
-/// Counter-clockwise, so that (-edge.v, edge.u) points inwards. Of a triangle without area the longest side
-/// is left, there and back, so that both sides of its axis are tested.
+/// The corners counter-clockwise, so that (-edge.v, edge.u) points inwards. For a triangle without area, its
+/// longest side, there and back, so that both sides of its axis are tested.
 std::array<glm::i64vec2, 3> wind(const std::array<glm::i64vec2, 3>& p) {
     const glm::i64vec2 ab = p[1] - p[0];
     const glm::i64vec2 ac = p[2] - p[0];
@@ -36,12 +36,13 @@ std::array<glm::i64vec2, 3> wind(const std::array<glm::i64vec2, 3>& p) {
     return {p[longest], p[(longest + 1) % 3], p[longest]};
 }
 
-/// Keeps a bound where it can be made a whole number; half a voxel off all that counts, so never in doubt.
+/// Limits a bound to values that fit an int. The limits are half a voxel from all values that count, so they
+/// change no decision.
 double limited(double bound, int last) {
     return std::min(std::max(bound, -0.5), double(last) + 1.5);
 }
 
-/// Of limited bounds; by truncation, for without SSE 4.1 the library's functions are calls.
+/// The floor of a limited bound; by truncation, because std::floor is a call without SSE 4.1.
 int floor_of(double bound) {
     return int(bound + 1.0) - 1;
 }
@@ -50,7 +51,7 @@ bool near_whole(double bound, double error) {
     return std::abs(bound - double(int(bound + 0.5))) <= error;
 }
 
-/// Closed voxel i touches [lowest, highest] from i = ceil(lowest) - 1 to floor(highest).
+/// The closed voxels that touch [lowest, highest]: ceil(lowest) - 1 to floor(highest).
 Span touched_between(double lowest, double highest, int last) {
     const int below = floor_of(lowest);
     const int first = double(below) == lowest ? below - 1 : below;
@@ -71,8 +72,8 @@ ProjectedSides::ProjectedSides(const std::array<glm::i64vec2, 3>& corners, int s
         const glm::i64vec2& p = corners_[i];
         const glm::i64vec2& q = corners_[(i + 1) % 3];
         const glm::i64vec2 inward(p.y - q.y, q.x - p.x);
-        if (inward.x == 0) continue;  // parallel to u: the bounding box says as much
-        // A row's innermost edge is its upper one where the side faces up.
+        if (inward.x == 0) continue;  // parallel to u: the bounding box is the same bound
+        // A row's innermost edge is its upper one if the side faces up.
         const Side side{double(p.x) * unit, double(p.y) * unit - (inward.y > 0 ? 1.0 : 0.0),
                         double(inward.y) / double(inward.x)};
         slanted = slanted || inward.y != 0;
@@ -82,8 +83,8 @@ ProjectedSides::ProjectedSides(const std::array<glm::i64vec2, 3>& corners, int s
             upper_[std::size_t(upper_count_++)] = side;
         }
     }
-    // Three roundings of terms that, where the bound is not far outside, are under twice the size: 2^-50 of
-    // it would do. Upright sides have exact bounds.
+    // Terms are rounded three times. If the bound is not far outside, each is under twice the size, so 2^-50
+    // of the size would do. Upright sides have exact bounds.
     error_ = slanted ? 0x1p-46 * double(voxels_of_u + 1) : -1.0;
 }
 
@@ -151,10 +152,10 @@ RowSpans::RowSpans(const std::array<glm::ivec3, 3>& corners, int shift)
     if (normal_.x < 0) normal_ = -normal_;
     has_plane_ = normal_.x != 0;
     if (!has_plane_) return;
-    // Components of the normal are whole numbers below 2^53: each slope is rounded once.
+    // Components of the normal are whole numbers below 2^53, so each slope is rounded once.
     slope_ = -glm::dvec2(double(normal_.y), double(normal_.z)) / double(normal_.x);
     const glm::dvec3 at = glm::dvec3(corner_) * std::ldexp(1.0, -shift);
-    // The lowest x over the row from (y, z) is at its corner where the slopes point down.
+    // The plane's lowest x over the row is at the corner towards which it slopes down.
     const glm::dvec2 lowest(slope_.x < 0.0 ? 1.0 : 0.0, slope_.y < 0.0 ? 1.0 : 0.0);
     plane_at_low_ = at.x + slope_.x * (lowest.x - at.y) + slope_.y * (lowest.y - at.z);
     plane_width_ = std::abs(slope_.x) + std::abs(slope_.y);

@@ -7,7 +7,7 @@
 
 namespace cairn::bench {
 
-/// Whole numbers from first to last; none when first > last.
+/// Whole numbers from `first` to `last`; empty if first > last.
 struct Span {
     int first, last;
     [[nodiscard]] bool empty() const { return first > last; }
@@ -15,25 +15,25 @@ struct Span {
 
 /// One projection of a triangle, as bounds of `u` for each row of `v`: u and v are two of the axes.
 ///
-/// Doubles in voxels from the triangle's low corner, where vertices are exact; where the nearest voxel plane
-/// is within the error of rounding, whole numbers of 64 bits decide.
+/// Bounds are doubles in voxels from the triangle's low corner, in which vertices are exact. If the nearest
+/// voxel plane is within the error of rounding, whole numbers of 64 bits decide.
 class ProjectedSides {
 public:
-    /// @param corners  (u, v), lattice units from the low corner's, at most 2^26
+    /// @param corners  (u, v) in lattice units relative to the low corner's, at most 2^26
     /// @param shift    log2 of a voxel's side
     ProjectedSides(const std::array<glm::i64vec2, 3>& corners, int shift, int voxels_of_u);
 
-    /// What closed row v (from `v` to `v + 1` voxels) can touch, by these sides alone.
+    /// Voxels of the closed row from `v` to `v + 1` that can be touched, by these sides alone.
     [[nodiscard]] Span touched(int v) const;
 
 private:
     struct Side {
-        double u, v;   ///< a corner; v already moved to the row's innermost edge
+        double u, v;   ///< corner; v is moved to the row's innermost edge
         double slope;  ///< u = this->u - slope * (row - this->v)
     };
     [[nodiscard]] Span exactly_touched(int v) const;
 
-    std::array<glm::i64vec2, 3> corners_;  ///< counter-clockwise, or there and back
+    std::array<glm::i64vec2, 3> corners_;  ///< counter-clockwise; if flat, there and back
     std::array<Side, 3> lower_, upper_;
     int lower_count_ = 0, upper_count_ = 0;
     int shift_;
@@ -52,18 +52,20 @@ private:
 /// The voxels that a closed triangle touches, row by row along x.
 class RowSpans {
 public:
-    /// @param corners  lattice units, each within [-2^24, 2^25]
+    /// @param corners  corners in lattice units, within [-2^24, 2^25]
     /// @param shift    log2 of a voxel's side
     RowSpans(const std::array<glm::ivec3, 3>& corners, int shift);
 
     [[nodiscard]] const glm::ivec3& low() const { return low_; }
     [[nodiscard]] const glm::ivec3& high() const { return high_; }
 
-    /// All rows of one z within [low().z, high().z].
+    /// The rows of one z within [low().z, high().z].
     class Slice {
     public:
-        [[nodiscard]] const Span& rows() const { return rows_; }  ///< the y that can touch
-        [[nodiscard]] Span row(int y) const;                      ///< the x touched; y within rows()
+        /// Values of y whose rows can touch the triangle.
+        [[nodiscard]] const Span& rows() const { return rows_; }
+        /// Values of x that touch the triangle. @param y  within rows().
+        [[nodiscard]] Span row(int y) const;
 
     private:
         friend class RowSpans;
@@ -80,11 +82,11 @@ private:
 
     glm::ivec3 low_, high_;
     int shift_;
-    glm::i64vec3 corner_;  ///< of the triangle, lattice units from the low corner's
-    glm::i64vec3 normal_;  ///< x >= 0
+    glm::i64vec3 corner_;  ///< a corner in lattice units, relative to the low corner
+    glm::i64vec3 normal_;  ///< normal with x >= 0
     ProjectedSides xy_, xz_, yz_;
     bool has_plane_;
-    glm::dvec2 slope_{0.0};  ///< of the plane's lowest x over a row, along y and z
+    glm::dvec2 slope_{0.0};  ///< slopes along y and z of the plane's lowest x in a row
     double plane_at_low_ = 0.0, plane_width_ = 0.0, plane_error_ = 0.0;
 };
 

@@ -11,15 +11,15 @@
 
 namespace cairn::bench {
 
-/// Draws all triangles along x, y and z, orthographically, with nothing written: depth test, culling and
-/// colour writes are off, and the framebuffer has one attachment of eight bits. It finds no voxel: the time
-/// is what any method by rasterization (Forest et al. 2009, Table 1) cannot get under.
+/// Draws all triangles along x, y and z, orthographically, without writing anything: depth test, culling and
+/// colour writes are off, and the framebuffer has one attachment of eight bits. It finds no voxels; its time
+/// is a lower bound for any method by rasterization (Forest et al. 2009, Table 1).
 class ThreeDirections {
 public:
-    /// @throws Error (Fault::context) when the driver takes none of it.
+    /// @throws Error (Fault::context) if the driver does not take the framebuffer.
     ThreeDirections(const voxelizer::Surface& surface, int resolution);
 
-    /// Milliseconds from an idle driver to an idle driver.
+    /// Draws once. @return milliseconds from an idle driver to an idle driver.
     [[nodiscard]] double draw() const;
 
 private:

@@ -15,10 +15,10 @@ using renderer::Tile;
 
 namespace {
 
-/// Of positions, as a share of the root cube's side: a few steps of a float, which rays count in.
+/// Margin of positions, as a share of the root cube's side: a few steps of a float, in which rays compute.
 constexpr double place_margin = 0x1p-20;
 
-/// Does it hold something, as far as the mask of its parent and, with n = 8, the oracle tell?
+/// Whether the child may hold something, by the mask of its parent and, if n = 8, by the oracle.
 bool may_hold_child(renderer::Oracle& oracle, const glm::uvec2& mask, const Tile& parent, int n, int child) {
     return may_hold(mask, n, child) && !(n == 8 && oracle.is_empty(child_of(parent, n, child)));
 }

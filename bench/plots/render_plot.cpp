@@ -15,7 +15,7 @@ struct Point {
     std::string scene, varied, series;
     double pixel_error = 1.0;
     double ms = 0.0;
-    std::array<double, 2> errors{};  ///< of colours, of the silhouette
+    std::array<double, 2> errors{};  ///< error of colours, error of the silhouette
 
     [[nodiscard]] TimeAndError by(std::size_t error) const { return {ms, errors[error]}; }
 };
@@ -54,7 +54,7 @@ public:
         out += label({2,
                       machine_.words() +
                           ". Labels: pixel error. Ring: no other is faster and nearer to the picture with "
-                          "64 samples a pixel",
+                          "64 samples per pixel",
                       10, grid.from_top(48), middle});
         out +=
             "set logscale xy\nset format x \"%g\"\nset format y \"%g\"\nset grid lc \"#e4e4e4\" lt 1\n"
@@ -69,7 +69,7 @@ public:
     }
 
 private:
-    static constexpr double middle = 0.45;  ///< of the panels, beside their key
+    static constexpr double middle = 0.45;  ///< middle of the panels, beside their key
 
     [[nodiscard]] bool on_front(const Point& point, std::size_t error) const {
         return std::none_of(points_.begin(), points_.end(), [&](const Point& other) {
@@ -87,7 +87,7 @@ private:
             lines += fmt::format("{:.6g} {:.6g}\n", point.ms, point.errors[error]);
         std::string blocks = data_block("$front", lines);
         lines.clear();
-        // Where several pixel errors take the same levels, the first has the label.
+        // If several pixel errors take the same levels, the first has the label.
         double labelled = -1.0;
         for (const Point& point : points_) {
             if (point.scene != scene || point.series != series_.front() || point.errors[error] == labelled)

@@ -23,7 +23,7 @@ struct Style {
     int point;
     int dash;
 };
-/// Okabe and Ito's colours, told apart by all; a method keeps its colour.
+/// Okabe and Ito's colours, which the colour-blind can distinguish. A method has one colour in all panels.
 struct MethodColor {
     const char* method;
     const char* color;
@@ -49,7 +49,7 @@ constexpr std::array<Panel, 4> panels = {{{"hard", "ground", "hard light, on the
                                           {"soft", "ground", "soft light, on the ground"},
                                           {"soft", "all", "soft light, on all"}}};
 
-/// What a label at a point says.
+/// The label of a point.
 std::string setting_of(const Row& row) {
     const auto whole = [&](const char* name) {
         return row.is_empty(name) ? std::string() : std::to_string(row.whole(name));
@@ -113,7 +113,7 @@ public:
     }
 
 private:
-    /// Lines of a method differ by their points.
+    /// The style of a line. Lines of one method differ by their points.
     [[nodiscard]] Style style_of(std::size_t series) const {
         const std::string& method = series_[series].first;
         int line = 0;
@@ -149,7 +149,7 @@ private:
     [[nodiscard]] std::string drawn(const std::string& scene, const Panel& panel) const {
         const std::vector<Point> points = points_in(scene, panel);
         if (points.empty()) return "set multiplot next\n";
-        // Exact results have no place on a logarithmic axis: they lie on its lowest line.
+        // An error of 0 is not on a logarithmic axis: it is drawn on the lowest line.
         double least = 1.0;
         double greatest = 1e-4;
         double first = 1e30;
@@ -191,7 +191,7 @@ private:
         return out + plots + "unset label\n";
     }
 
-    /// One for all panels, along the bottom.
+    /// The key of all panels, along the bottom.
     [[nodiscard]] std::string key(double top, int rows) const {
         std::string out =
             "set size 1,1\nset origin 0,0\nset lmargin at screen 0\nset rmargin at screen 1\n"

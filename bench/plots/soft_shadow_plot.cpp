@@ -21,12 +21,12 @@ struct Point {
     double ms = 0.0;
 };
 
-/// Black last.
+/// The style of a line. Black comes last.
 const PlotStyle& line_style(std::size_t line) {
     return plot_styles[(line + 1) % plot_styles.size()];
 }
 
-constexpr double headroom = 1.45;  // over the curves, for their names
+constexpr double headroom = 1.45;  // height of a panel over that of its curves, for their names
 
 struct Series {
     std::string title;
@@ -34,10 +34,10 @@ struct Series {
 };
 
 struct Panel {
-    std::string title, x_label, axes;  ///< axes: commands for scales and ranges
+    std::string title, x_label, axes;  ///< `axes`: commands for scales and ranges
     bool is_time = false;
     std::vector<Series> series;
-    double power = 1.0;  ///< of the parameter, to the right
+    double power = 1.0;  ///< exponent of the parameter on the horizontal axis
 };
 
 class SoftShadowPlot {
@@ -83,7 +83,7 @@ public:
     }
 
 private:
-    /// Of one study with fitted windows in FP32.
+    /// A series of one study with fitted windows in FP32.
     static Series passes_of(const std::string& occluder, const char* study, std::int64_t passes,
                             std::int64_t size = 0) {
         return {passes == 1 ? "one pass" : "two passes", [=](const Point& p) {
@@ -98,7 +98,7 @@ private:
 
     [[nodiscard]] std::vector<Panel> error_panels(const std::string& occluder) const {
         const std::array<std::array<const char*, 4>, 4> kinds = {
-            {{"resolution", "size of the occluder map", "texels a side", "set logscale x 2\n"},
+            {{"resolution", "size of the occluder map", "texels per side", "set logscale x 2\n"},
              {"light-size", "width of the light", "occluder = 1", ""},
              {"lateral", "lateral position", "from the light's axis, occluder = 1", ""},
              {"vertical", "vertical position", "0 on the floor, 1 at the light", ""}}};
@@ -132,7 +132,7 @@ private:
         Panel texels{"time over the occluder map", "texels", "set format x \"%.0s%c\"\n", true, {}, 2.0};
         Panel lights{occluders_.back() + ": time over the light", "width, occluder = 1", "", true, {}};
         Panel formats{occluders_.front() + ": what sums are kept in (one pass)",
-                      "texels a side",
+                      "texels per side",
                       "set logscale x 2\n",
                       false,
                       {}};

@@ -38,7 +38,7 @@ public:
             add_once(methods_, point.method);
             add_once(resolutions_, point.resolution);
             points_.push_back(point);
-            // Contenders on the CPU have no driver: "none: CPU".
+            // The driver of contenders on the CPU is "none: CPU".
             const std::string& driver = row.text("driver");
             if (driver.find(':') == std::string::npos || machine_.driver.empty()) machine_.driver = driver;
             machine_.threads = row.whole("threads");
@@ -78,10 +78,11 @@ public:
 
 private:
     [[nodiscard]] static PlotStyle style_of(std::size_t method) {
-        return plot_styles[1 + method % (plot_styles.size() - 1)];  // black marks the best
+        return plot_styles[1 + method % (plot_styles.size() - 1)];  // black is for the rings
     }
 
-    /// Heights: powers of ten of the error; lanes for exact methods under them, one for no voxels above.
+    /// Sets the vertical scale: powers of ten of the error, lanes below them for exact methods, and a lane
+    /// above them for methods without voxels.
     void set_scale() {
         double least = std::numeric_limits<double>::infinity();
         double most = 0.0;
@@ -121,7 +122,7 @@ private:
         return 0.8 + 0.35 * double(place);
     }
 
-    /// A block for each scene and method, and one of each scene's front: x, y, size of the point.
+    /// A data block per scene and method, and one per front of a scene: x, y, size of the point.
     [[nodiscard]] std::string data() const {
         std::string out;
         for (std::size_t scene = 0; scene < scenes_.size(); ++scene) {
@@ -142,7 +143,7 @@ private:
         return out;
     }
 
-    /// Only the panels on the left name their heights.
+    /// The ticks of the vertical axis. @param named  with labels, as in the panels on the left.
     [[nodiscard]] std::string heights(bool named) const {
         std::string ticks;
         const auto add = [&](const std::string& name, double at) {
@@ -177,7 +178,7 @@ private:
         return out;
     }
 
-    /// Under the panels, by hand: a key of gnuplot's belongs to one of them.
+    /// The key below the panels, drawn by hand, because gnuplot's key belongs to one panel.
     [[nodiscard]] std::string legend(const PanelGrid& grid) const {
         std::string out;
         const double step = 0.96 / double(std::max<std::size_t>(methods_.size(), 1));
@@ -193,7 +194,7 @@ private:
         for (const int resolution : resolutions_)
             sizes += fmt::format("{}{}", sizes.empty() ? "" : ", ", resolution);
         return out + label({1200,
-                            fmt::format("larger points, further right along a line: {} voxels a side.   "
+                            fmt::format("larger points, further right along a line: {} voxels per side.   "
                                         "Black ring: no method is both faster and nearer to the truth at "
                                         "that resolution.   Error: (missing + extra) / true voxels",
                                         sizes),
@@ -217,7 +218,7 @@ private:
         }
         out += fmt::format(
             "$front{} using 1:2:($3+0.75) with points pt 6 ps variable lw 1.6 lc \"#000000\"\n", scene);
-        // Labels of the whole picture are drawn once.
+        // Labels of the whole picture are drawn with the first panel.
         if (scene == 0) out += "unset label\n";
         return out;
     }

@@ -8,11 +8,11 @@
 namespace cairn::bench {
 
 /// The gnuplot script of the chart: a panel for each scene, time against error, both logarithmic, with a lane
-/// under the errors for none at all and one above for what finds no voxels. One line a method, through its
-/// resolutions. Points on the Pareto front of their resolution (no other is both faster and nearer to the
-/// truth) are ringed.
+/// below the errors for exact methods and a lane above for methods that find no voxels. One line per method,
+/// through its resolutions. Points on the Pareto front of their resolution (no other is both faster and
+/// closer to the truth) are ringed.
 ///
-/// @param table    of chart_voxelize
+/// @param table    the table of chart_voxelize
 /// @param picture  the PNG to write
 [[nodiscard]] std::string voxelize_plot(const Table& table, const std::filesystem::path& picture);
 

@@ -12,22 +12,22 @@
 
 namespace cairn::bench {
 
-/// What a chart is asked for.
+/// Options of a chart.
 struct ChartOptions {
-    /// Where the files go; made if need be.
+    /// Folder for the files; created if need be.
     std::filesystem::path folder = ".";
-    /// Paths and builtin:NAMEs; empty: the chart's own choice.
+    /// Scenes, by paths and builtin:NAMEs; empty: the chart's own choice.
     std::vector<std::string> scenes;
-    /// Where to look for the real scenes among the chart's own choice; none: they are left out.
+    /// Folder of the real scenes of the chart's own choice; none: they are left out.
     std::optional<std::filesystem::path> scene_folder;
     /// Voxels per side, or pixels; empty: the chart's own choice.
     std::vector<int> resolutions;
-    /// Pixels from left to right, where `resolutions` are voxels; none: the chart's own choice.
+    /// Width of pictures in pixels if `resolutions` are voxels; none: the chart's own choice.
     std::optional<int> width;
-    int runs = 7;  ///< of each contender, in turn; at least 1
-    /// A contender is not run again once it has taken so long at one size.
+    int runs = 7;  ///< runs per contender, in turn; at least 1
+    /// Milliseconds after which a contender is not run again at one size.
     double budget_ms = 3000.0;
-    /// Keeps what Embree found of soft lights, which takes long; none: found anew.
+    /// Folder that keeps Embree's shares of soft lights, which take long; none: they are computed each time.
     std::optional<std::filesystem::path> truth_cache;
     VoxelOptions voxels;
     gl::ShaderSource shaders;
@@ -35,11 +35,11 @@ struct ChartOptions {
     std::function<void(double)> progress;
 };
 
-/// What a chart has measured.
+/// Results of a chart.
 struct Chart {
     Table table;
-    std::vector<std::filesystem::path> files;  ///< written
-    std::vector<std::string> notes;            ///< what was left out, and why
+    std::vector<std::filesystem::path> files;  ///< files that were written
+    std::vector<std::string> notes;            ///< parts that were left out, with the reasons
     bool differs = false;                      ///< a comparison with the truth found a difference
 };
 

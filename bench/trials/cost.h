@@ -10,8 +10,8 @@
 
 namespace cairn::bench {
 
-/// Milliseconds by the wall clock, and of the processor in all threads of this process. The processor's hold
-/// better where the machine is shared.
+/// Time by the wall clock, and processor time of all threads of this process. Processor time varies less on a
+/// machine that is shared.
 struct Cost {
     double wall_ms = 0.0;
     double processor_ms = 0.0;
@@ -36,7 +36,7 @@ template <typename Work>
     return {std::chrono::duration<double, std::milli>(stop - start).count(), processor_ms() - processor};
 }
 
-/// What a contender took, frame by frame. The medians need one frame at least.
+/// Costs of a contender, frame by frame. The medians need at least one frame.
 struct Costs {
     std::vector<Cost> frames;
     [[nodiscard]] double wall_ms() const { return median_of(&Cost::wall_ms); }

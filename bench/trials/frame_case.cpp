@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <variant>
+
+#include <fmt/format.h>
 
 #include "base/error.h"
 #include "bench/trials/real_scenes.h"
@@ -20,21 +23,33 @@ namespace {
 constexpr double shell_inner = 0.25;
 constexpr double shell_outer = 0.30;
 constexpr std::int64_t copy_resolution = 256;
-/// Of the densest, through a finest voxel: so solids are opaque after a few, however fine they are.
+/// Optical depth of density 1 per finest voxel: solids are opaque after a few voxels, however fine these are.
 constexpr double optical_depth = 1.0;
-/// What does not show of a scan, as a share of its densities.
+/// Densities of a scan below this share do not show.
 constexpr double scan_empty = 0.3;
 
-/// @param empty  density that does not show; 0 where voxels that are coarse and thin are to show as such.
+constexpr std::string_view one_shell = "builtin:hollow-sphere";
+constexpr std::string_view repeated_shells = "builtin:spheres-repeated";
+
+bool is_shells(std::string_view path) {
+    return path == one_shell || path == repeated_shells;
+}
+
+bool is_volume(const std::string& path) {
+    return is_shells(path) || scenes::is_volume_file(path);
+}
+
+/// A transfer function for solids.
+/// @param empty  greatest density that does not show; 0 if coarse, thin voxels are to show.
 renderer::TransferFunction opaque(double empty, double voxel_size) {
     return renderer::TransferFunction(
         {{empty, glm::dvec3(0.9), 0.0}, {1.0, glm::dvec3(0.9), optical_depth / voxel_size}});
 }
 
-/// A field elsewhere.
-class Moved final : public renderer::Field {
+/// A field at another place.
+class MovedField final : public renderer::Field {
 public:
-    Moved(std::shared_ptr<const renderer::Field> field, const glm::dvec3& origin)
+    MovedField(std::shared_ptr<const renderer::Field> field, const glm::dvec3& origin)
         : field_(std::move(field)), frame_(field_->frame()) {
         frame_.origin = origin;
     }
@@ -74,8 +89,8 @@ struct FrameCase::Data {
 };
 
 FrameCase::FrameCase(const std::string& path) : data_(std::make_unique<Data>()), name_(scene_name(path)) {
-    if (path == "builtin:hollow-sphere" || path == "builtin:spheres-repeated") {
-        data_->shown = Data::Shells{path == "builtin:spheres-repeated"};
+    if (is_shells(path)) {
+        data_->shown = Data::Shells{path == repeated_shells};
         bounds_ = {glm::dvec3(-0.5), glm::dvec3(0.5)};
     } else if (path == "builtin:sponge") {
         data_->shown = Data::Sponge{};
@@ -108,7 +123,7 @@ renderer::TreeOptions FrameCase::fitted(const renderer::TreeOptions& tree) const
     return usual;
 }
 
-FrameCase::Shown FrameCase::shown_field(const renderer::TreeOptions& tree) const {
+FrameCase::ShownField FrameCase::shown_field(const renderer::TreeOptions& tree) const {
     if (const scenes::Volume* const volume = data_->volume()) {
         const glm::dvec3& spacing = volume->spacing;
         const double voxel_size = std::min({spacing.x, spacing.y, spacing.z});
@@ -122,7 +137,7 @@ FrameCase::Shown FrameCase::shown_field(const renderer::TreeOptions& tree) const
         std::make_shared<renderer::HollowSphere>(tree.n, resolution / copies, shell_inner, shell_outer, side);
     if (copies > 1) {
         const auto repeated = std::make_shared<renderer::RepeatedField>(std::move(field), copies);
-        field = std::make_shared<Moved>(repeated, bounds_.low);
+        field = std::make_shared<MovedField>(repeated, bounds_.low);
     }
     return {std::move(field), opaque(0.0, 1.0 / double(resolution))};
 }
@@ -135,7 +150,7 @@ renderer::Renderer FrameCase::make(const renderer::TreeOptions& tree, const gl::
 
 renderer::TreeShape FrameCase::shape(const renderer::TreeOptions& tree) const {
     if (data_->volume() == nullptr) return renderer::tree_shape_of(fitted(tree));
-    const Shown shown = shown_field(tree);
+    const ShownField shown = shown_field(tree);
     return renderer::make_volume_shape(shown.field->frame(), tree.n, tree.m, tree.max_resolution).tree;
 }
 
@@ -145,8 +160,23 @@ std::unique_ptr<renderer::Content> FrameCase::content(const renderer::TreeOption
     if (const Data::AtRest* const rest = data_->scene())
         return renderer::surface_content(rest->scene, rest->snapshot, tree, shaders);
     if (data_->is_sponge()) return renderer::fractal_content(fitted(tree), shaders);
-    Shown shown = shown_field(tree);
+    ShownField shown = shown_field(tree);
     return renderer::volume_content(std::move(shown.field), shown.transfer, tree, volume);
+}
+
+void check_volume_options(Chart& chart, const ChartOptions& options, const std::vector<std::string>& scenes) {
+    const VoxelOptions& voxels = options.voxels;
+    if (!voxels.steps_per_voxel && !voxels.gradient_threshold) return;
+    const char* const option = voxels.steps_per_voxel ? "--steps-per-voxel" : "--gradient-threshold";
+    std::vector<std::string> notes;
+    for (const std::string& scene : scenes) {
+        if (!is_volume(scene))
+            notes.push_back(fmt::format("{} changes nothing of {}, which is no volume", option, scene));
+    }
+    if (notes.size() == scenes.size())
+        throw Error(Fault::usage, option, "none of the chart's scenes is a volume",
+                    "leave it out, or give a volume with --scene");
+    chart.notes.insert(chart.notes.end(), notes.begin(), notes.end());
 }
 
 renderer::View FrameCase::view(int width, int height) const {

@@ -6,7 +6,7 @@
 namespace cairn::bench {
 namespace {
 
-constexpr int samples_per_side = 8;  // of a pixel
+constexpr int samples_per_side = 8;  // samples per side of a pixel
 
 }  // namespace
 

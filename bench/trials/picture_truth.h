@@ -15,10 +15,10 @@ namespace cairn::bench {
                                                   const renderer::View& view);
 
 struct PictureErrors {
-    double rmse = 0.0;        ///< of sRGB in [0, 1]
-    double silhouette = 0.0;  ///< wrongly covered area, as a share of what the scene covers
+    double rmse = 0.0;        ///< root mean square error of sRGB values in [0, 1]
+    double silhouette = 0.0;  ///< wrongly covered area, per area that the scene covers
 };
-/// Both pictures must have one size.
+/// Both pictures must have the same size.
 [[nodiscard]] PictureErrors picture_errors(const optics::Image& ours, const reference::ShadedImage& truth);
 
 }  // namespace cairn::bench

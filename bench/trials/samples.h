@@ -5,7 +5,7 @@
 
 namespace cairn::bench {
 
-/// Of an even count, the upper one of the two in the middle. There must be one at least.
+/// The median; of an even number of values the greater of the two in the middle. `values` must not be empty.
 [[nodiscard]] inline double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];

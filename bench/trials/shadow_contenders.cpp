@@ -21,10 +21,11 @@ using Rays = reference::ImageTracer::Rays;
 constexpr int own_resolution = 512;
 constexpr int own_rays = 16;
 constexpr std::array resolutions = {128, 256, 512, 1024, 2048};
-/// The next does not fit where a buffer holds 128 MiB of texels.
+/// The next resolution does not fit if a buffer holds only 128 MiB of texels.
 constexpr std::array pyramid_resolutions = {128, 256, 512, 1024};
-/// A voxel a side. Surfaces grow with its square, but what a picture's rays meet of them more slowly; no
-/// frame should produce what the one before it had.
+/// Bytes of the brick pool per voxel of the resolution. Surfaces grow with its square, but the part that a
+/// picture's rays meet grows more slowly. No frame should have to produce bricks that the frame before it
+/// had.
 constexpr std::size_t finest_pool_bytes = std::size_t(1) << 19U;
 constexpr std::array ray_counts = {1, 4, 16, 64, 256};
 constexpr std::array cone_counts = {1, 2, 4, 8, 16};
@@ -34,7 +35,7 @@ constexpr int own_map_size = 256;
 constexpr std::array plain_map_sizes = {512, 1024, 2048, 4096};
 constexpr std::array strata = {1, 2, 3, 4, 6, 8, 16};
 
-/// Pools are made when they are first needed, and shared by all that goes through the same voxels.
+/// Pools are made when they are first needed, and shared by all contenders that use the same voxels.
 ShadowRun run_voxels(const ShadowCase& shadow_case, std::optional<int> resolution,
                      const renderer::View& view) {
     std::unique_ptr<ShadowFrames>& kept = shadow_case.voxels[resolution];
@@ -189,7 +190,7 @@ void add_plain_maps(const ShadowCase& shadow_case, Contenders& all) {
         add("pcss", "taps", {.map_size = 1024, .filter = PcfFilter::penumbra, .kernel = kernel});
 }
 
-/// A primary and a shadow ray a pixel: of a hard light it is the truth itself.
+/// One primary ray and one shadow ray per pixel. For a hard light this is the truth itself.
 ShadowRun run_embree_hard(const ShadowCase& shadow_case, Rays rays) {
     const renderer::View view = shadow_case.scene.view(shadow_case.width, shadow_case.height, 1);
     const reference::ReferenceImage image =
@@ -214,7 +215,7 @@ void add_embree(const ShadowCase& shadow_case, Contenders& all) {
     for (const Rays rays : {Rays::single, Rays::packets}) {
         for (const int across : strata) {
             if (!shadow_case.is_soft && across > 1) break;
-            // A packet holds rays of one pixel.
+            // A packet holds rays of one pixel, of which there is only one.
             if (shadow_case.is_soft && across == 1 && rays == Rays::packets) continue;
             reference::AreaLightOptions options;
             options.exact_strata = across;

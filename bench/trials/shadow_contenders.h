@@ -16,43 +16,44 @@
 
 namespace cairn::bench {
 
-/// What voxels of one scene are kept in, from one case to the next: by the voxels a side that rays meet, or
-/// by what a pixel shows.
+/// Voxels of one scene, kept from one case to the next. The key is the number of voxels per side that rays
+/// meet; none: the level is chosen per pixel.
 using KeptVoxels = std::map<std::optional<int>, std::unique_ptr<ShadowFrames>>;
 
-/// What all contenders are asked: what of the light arrives at each pixel of a picture.
+/// The question to all contenders: the share of the light that arrives at each pixel of a picture.
 struct ShadowCase {
     const ShadowScene& scene;
     int width = 512;
     int height = 384;
-    bool is_soft = true;  ///< else of its middle
+    bool is_soft = true;  ///< whole light; false: its middle alone
     const reference::ImageTracer& tracer;
-    const reference::ShadowReceivers& receivers;  ///< the pixels that count
+    const reference::ShadowReceivers& receivers;  ///< pixels that are compared
     KeptVoxels& voxels;
     const ChartOptions& options;
 };
 
-/// What a table says of a contender, beside its method; nothing where it does not apply.
+/// The parameters of a contender, as columns of the table; empty if they do not apply to its method.
 struct ShadowSetting {
-    std::string varied;                      ///< what differs along a line of the picture
-    std::optional<int> rays = std::nullopt;  ///< a pixel
-    std::optional<int> resolution =
-        std::nullopt;  ///< voxels a side that rays meet; none: by what a pixel shows
-    std::optional<int> map_size = std::nullopt;  ///< texels a side
-    std::optional<int> kernel = std::nullopt;    ///< taps an axis
-    std::optional<int> samples = std::nullopt;   ///< of the light, a pixel, on the CPU
-    std::string passes = {}, format = {};        ///< of a soft shadow map
+    /// The parameter that varies along a line of the picture.
+    std::string varied;
+    std::optional<int> rays = std::nullopt;  ///< rays per pixel
+    /// Voxels per side that rays meet; none: the level is chosen per pixel.
+    std::optional<int> resolution = std::nullopt;
+    std::optional<int> map_size = std::nullopt;  ///< texels per side of a map
+    std::optional<int> kernel = std::nullopt;    ///< taps per axis
+    std::optional<int> samples = std::nullopt;   ///< samples of the light per pixel, on the CPU
+    std::string passes = {}, format = {};        ///< options of a soft shadow map
 };
 
-/// A way to a shadow, in one setting. A new one is a function in the table of shadow_contenders.cpp.
+/// A method with its setting. To add a method, add a function to the table in shadow_contenders.cpp.
 struct ShadowContender {
     std::string method;
     ShadowSetting setting;
     bool is_ours = true;
-    bool ground_only = false;  ///< knows no shadow of what throws it on itself
+    bool ground_only = false;  ///< finds no shadows of casters on casters
     std::function<ShadowRun()> run;
 };
-/// All of them for one case, which must outlive them; within a line from cheap to dear.
+/// All contenders of a case, which must outlive them; along a line from cheap to expensive.
 [[nodiscard]] std::vector<ShadowContender> shadow_contenders(const ShadowCase& shadow_case);
 
 }  // namespace cairn::bench

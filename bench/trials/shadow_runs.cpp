@@ -29,7 +29,8 @@ renderer::TreeOptions tree_of(int resolution) {
     int side = 16;
     while (side * tree.n <= resolution)
         side *= tree.n;
-    // N = 2 comes to the powers of two between: bricks of 32 voxels would hold, and produce, twice as much.
+    // N = 2 has the powers of two in between. Bricks of 32 voxels would have them too, but hold and produce
+    // more.
     if (side != resolution) tree.n = 2;
     return tree;
 }
@@ -45,7 +46,7 @@ ShadowRun RepeatedRuns::once() {
 void RepeatedRuns::sweep(int runs, double budget_ms) {
     if (!samples_ms_.empty() && (int(samples_ms_.size()) >= runs || spent_ms_ > budget_ms)) return;
     const ShadowRun before = once();
-    // What is that long is not repeated for the little that was compiled.
+    // A run this long counts, because the time of compiling is a small part of it.
     if (before.milliseconds > budget_ms && !before.fills_caches) samples_ms_.push_back(before.milliseconds);
     while (samples_ms_.empty() || (int(samples_ms_.size()) < runs && spent_ms_ <= budget_ms))
         samples_ms_.push_back(once().milliseconds);

@@ -12,21 +12,22 @@
 
 namespace cairn::bench {
 
+/// One run of a contender.
 struct ShadowRun {
     double milliseconds = 0.0;
-    std::vector<float> shares;  ///< one a pixel of the picture, in [0, 1]; -1: not known
-    bool fills_caches = false;  ///< it did work that is not done again
-    bool from_nothing = false;  ///< nothing was kept before it
+    std::vector<float> shares;  ///< share of the light per pixel, in [0, 1]; -1: unknown
+    bool fills_caches = false;  ///< did work that later runs do not repeat
+    bool from_nothing = false;  ///< started with empty caches
 };
 
-/// Shadows of one scene by one method, of which all that can be kept is kept from one to the next.
+/// Shadows of one scene by one method. Everything that can be kept is kept from one run to the next.
 class ShadowFrames {
 public:
     ShadowFrames(renderer::ShadowMethod method, const ShadowScene& scene,
                  const renderer::ShadowOptions& options, const gl::ShaderSource& shaders = {});
 
-    /// The shares of the light, and the time of the whole frame; of a soft shadow map, which other pictures
-    /// could be drawn with, that of the map alone.
+    /// Computes the shares of the light. The time is that of the whole frame; for soft shadow maps that of
+    /// the map alone, because other views could use the same map.
     [[nodiscard]] ShadowRun run(const renderer::View& view);
 
 private:
@@ -35,27 +36,31 @@ private:
     bool is_first_ = true;
 };
 
-/// A tree of exactly so many voxels a side: 8, or 16 and more, a power of two.
+/// A tree of exactly `resolution` voxels per side: a power of two, at least 8.
 [[nodiscard]] renderer::TreeOptions tree_of(int resolution);
-/// Rays go by the finest voxels of their tree, whatever a pixel shows.
-constexpr double always_finest = 1e-3;  // pixel error
+/// A pixel error at which rays take the finest voxels of their tree, whatever the size of pixels.
+constexpr double always_finest = 1e-3;
 
 /// Repeated runs of one contender.
 ///
-/// They follow each other, and one that does not count goes before them: llvmpipe drops compiled programs
-/// when others come, and contenders that took turns would compile theirs each time. So that a drift of the
-/// machine's speed shows in all, contenders are swept twice, with half of the runs each.
+/// Runs follow each other, after one that does not count: llvmpipe drops compiled programs when others come,
+/// so contenders that took turns would compile theirs each time. Contenders are swept twice, with half of the
+/// runs each, so that a drift of the machine's speed affects all of them.
 class RepeatedRuns {
 public:
     explicit RepeatedRuns(std::function<ShadowRun()> run) : run_(std::move(run)) {}
 
-    /// @param runs       that shall be there after it
-    /// @param budget_ms  no run begins once all have taken so long; there is one at least
+    /// @param runs       number of runs in all after this sweep
+    /// @param budget_ms  no run begins once all have taken so long; at least one does
     void sweep(int runs, double budget_ms);
 
-    [[nodiscard]] double ms() const;                                                   ///< median
-    [[nodiscard]] const std::optional<double>& first_ms() const { return first_ms_; }  ///< from nothing
-    [[nodiscard]] const std::vector<float>& shares() const { return shares_; }         ///< of the last
+    /// Median time of the runs.
+    [[nodiscard]] double ms() const;
+    /// Time of the run with empty caches, if there was one.
+    [[nodiscard]] const std::optional<double>& first_ms() const { return first_ms_; }
+    /// Shares of the last run.
+    [[nodiscard]] const std::vector<float>& shares() const { return shares_; }
+    /// Time of all runs together.
     [[nodiscard]] double spent_ms() const { return spent_ms_; }
 
 private:

@@ -9,20 +9,20 @@
 namespace cairn::bench {
 namespace {
 
-// Lengths in diagonals of the scene.
+// Lengths are in units of the scene's diagonal.
 const glm::dvec3 to_light(-0.6, 1.0, 0.15);
 constexpr double light_distance = 1.5;
 constexpr double light_side = 0.2;
-constexpr double ground_gap = 0.002;  ///< under what stands lowest, not to lie in its plane
+constexpr double ground_gap = 0.002;  ///< gap below the scene, so that no triangle is in the ground's plane
 constexpr double ground_margin = 0.15;
 
-/// How far on the ground the shadow of the bounds' top is from their foot.
+/// Offset on the ground of the shadow of the bounds' top from their foot.
 glm::dvec3 shadow_fall(const scenes::Bounds& bounds) {
     const double height = bounds.high.y - bounds.low.y;
     return glm::dvec3(-to_light.x, 0.0, -to_light.z) * (height / to_light.y);
 }
 
-/// Under the scene and where the shadow of its bounds falls.
+/// Adds a ground below the scene and below the shadow of its bounds.
 void add_ground(scenes::Scene& scene, const scenes::Bounds& bounds) {
     const double diagonal = glm::length(bounds.high - bounds.low);
     const glm::dvec3 fall = shadow_fall(bounds);
@@ -51,7 +51,7 @@ optics::Light light_over(const scenes::Bounds& bounds) {
     return optics::aimed_light(position, centre, light_side * diagonal, light_side * diagonal);
 }
 
-/// Steeper than optics::framing_camera(), from as far: the ground shows more of its shadow.
+/// A camera as far away as optics::framing_camera(), but higher, so that more of the shadow shows.
 optics::Camera camera_above(const scenes::Bounds& bounds, double aspect) {
     optics::Camera camera = optics::framing_camera(bounds, aspect);
     const double distance = glm::distance(camera.eye, camera.target);

@@ -31,7 +31,7 @@ scenes::Scene scene_of(std::vector<scenes::Primitive> primitives) {
     return scene;
 }
 
-/// Level, its front upwards.
+/// A horizontal square, its front upwards.
 scenes::Primitive level_square(double half, double height) {
     scenes::Primitive primitive;
     for (const auto& [x, z] : {std::pair(-1.0, -1.0), {-1.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}})
@@ -40,7 +40,7 @@ scenes::Primitive level_square(double half, double height) {
     return primitive;
 }
 
-/// In the world, scaled to a longest side of 1 and standing on y = 0.
+/// The scene in the world, scaled to a longest side of 1 and standing on y = 0.
 scenes::Scene standing(const std::string& path) {
     if (path == square_path) return scene_of({level_square(0.5, 0.0)});
     const scenes::Scene scene = scenes::load(path);
@@ -91,7 +91,7 @@ scenes::Primitive cut_in_parts(const scenes::Primitive& whole, int parts) {
     return fine;
 }
 
-/// Flat, and level.
+/// The horizontal light of a placement.
 optics::Light light_over(const ShadowPlacement& placement) {
     optics::Light light;
     light.positional = true;
@@ -118,8 +118,8 @@ ShadowOccluder ShadowOccluder::cut(int parts) const {
     return {name_, scene_of(std::move(primitives))};
 }
 
-/// The occluder stays, and the light and the floor are placed around it.
-StudySetting::StudySetting(const ShadowOccluder& occluder, const ShadowPlacement& placement)
+/// The occluder stays at its place; light and floor are placed around it.
+StudyCase::StudyCase(const ShadowOccluder& occluder, const ShadowPlacement& placement)
     : placement_(placement),
       light_(light_over(placement)),
       floor_(std::make_unique<scenes::Scene>(scene_of({level_square(floor_half, floor_height())}))),
@@ -127,7 +127,7 @@ StudySetting::StudySetting(const ShadowOccluder& occluder, const ShadowPlacement
       floor_mesh_(std::make_unique<renderer::ShadowMesh>(*floor_, floor_snapshot_)),
       fitted_(renderer::fit_shadow_frustum(light_, occluder.snapshot(), floor_snapshot_)) {}
 
-renderer::ShadowFrustum StudySetting::frustum(StudyWindow window) const {
+renderer::ShadowFrustum StudyCase::frustum(StudyWindow window) const {
     renderer::ShadowFrustum frustum = fitted_;
     if (window == StudyWindow::shared) {
         frustum.occluders.low = glm::min(fitted_.occluders.low, fitted_.receivers.low);

@@ -15,27 +15,26 @@
 #include "scenes/snapshot.h"
 
 /// The experiments of Atty et al. 2005, section 4.2: an occluder over a level floor, under a square light
-/// that looks straight down, and how far a soft shadow map is from what rays find. Lengths are in units of
-/// the occluder's longest side.
+/// that looks straight down, and the error of a soft shadow map against rays. Lengths are in units of the
+/// occluder's longest side.
 namespace cairn::bench {
 
-/// Triangles alone, an alpha mask counts as whole. The middle of their bounds is at x = z = 0 and their
-/// lowest point at y = 0; their longest side is 1.
+/// An occluder: the triangles of a scene, without alpha masks. The middle of its bounds is at x = z = 0, its
+/// lowest point at y = 0, and its longest side is 1.
 class ShadowOccluder {
 public:
-    /// @param path  what scenes::load takes; and builtin:square, 1 x 1, level and along the light's edges.
-    /// @throws Error  as loading does; Fault::usage for a scene without triangles.
+    /// @param path  as for scenes::load(); or builtin:square, 1 x 1, level and parallel to the light's edges.
+    /// @throws Error  as loading does; Fault::usage if the scene has no triangles.
     explicit ShadowOccluder(const std::string& path);
-    /// The same shape of parts^2 times as many triangles.
+    /// The same shape, of parts^2 times as many triangles.
     [[nodiscard]] ShadowOccluder cut(int parts) const;
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const scenes::Scene& scene() const { return *scene_; }
     [[nodiscard]] const scenes::Snapshot& snapshot() const { return snapshot_; }
     [[nodiscard]] double height() const { return snapshot_.bounds.high.y; }
-    /// How high its lowest point is over the floor where nothing else is said: the square floats, all else
-    /// stands.
-    [[nodiscard]] double own_gap() const { return height() > 0.0 ? 0.0 : 0.5; }
+    /// Default height of the lowest point over the floor: the square floats, everything else stands.
+    [[nodiscard]] double default_gap() const { return height() > 0.0 ? 0.0 : 0.5; }
 
 private:
     ShadowOccluder(std::string name, scenes::Scene scene);
@@ -44,30 +43,32 @@ private:
     scenes::Snapshot snapshot_;
 };
 
-/// How high the light is over the floor.
+/// Height of the light over the floor.
 inline constexpr double study_light_height = 3.0;
 
 struct ShadowPlacement {
     double light_width = 0.5;
-    double lateral = 0.0;  ///< of the occluder, from under the light's middle along x
-    double gap = 0.0;      ///< between the floor and the occluder's lowest point
+    double lateral = 0.0;  ///< offset along x of the occluder from the light's middle
+    double gap = 0.0;      ///< height of the occluder's lowest point over the floor
 };
 
 enum class StudyWindow : std::uint8_t {
-    fitted,  ///< the occluder map covers the occluders alone
-    shared,  ///< it covers what the soft shadow map covers, too: the one frustum of Atty et al.
+    /// The occluder map covers the occluders alone.
+    fitted,
+    /// The occluder map covers the window of the soft shadow map, too: the one frustum of Atty et al.
+    shared,
 };
 
-/// One placement, and what of the light is seen from the points of the floor. The occluder must outlive it.
-/// Needs the context that was current at its construction.
-class StudySetting {
+/// A placement of an occluder over the floor under the light. The occluder must outlive it. Needs the context
+/// that was current at its construction.
+class StudyCase {
 public:
-    StudySetting(const ShadowOccluder& occluder, const ShadowPlacement& placement);
+    StudyCase(const ShadowOccluder& occluder, const ShadowPlacement& placement);
 
     [[nodiscard]] const ShadowPlacement& placement() const { return placement_; }
     [[nodiscard]] const optics::Light& light() const { return light_; }
     [[nodiscard]] const renderer::ShadowMesh& floor() const { return *floor_mesh_; }
-    /// The receivers' window is the same in both.
+    /// The frustum of a soft shadow map. The receivers' window does not depend on `window`.
     [[nodiscard]] renderer::ShadowFrustum frustum(StudyWindow window) const;
     [[nodiscard]] double floor_height() const { return -placement_.gap; }
 
@@ -80,9 +81,9 @@ private:
     renderer::ShadowFrustum fitted_;
 };
 
-/// Points of receivers that the centres of texels of a soft shadow map stand for: the middle one of each
-/// study_step x study_step texels. They depend on the receivers' window and the map's size, and not on the
-/// occluder map; so one truth serves occluder maps of all sizes.
+/// Points of receivers at the centres of texels of a soft shadow map: at the middle one of each study_step x
+/// study_step texels. They depend on the receivers' window and on the map's size, but not on the occluder
+/// map, so that one truth serves occluder maps of all sizes.
 struct ShadowPoints {
     std::vector<glm::ivec2> texels;
     std::vector<glm::dvec3> world;
@@ -90,17 +91,17 @@ struct ShadowPoints {
 inline constexpr int study_step = 3;
 [[nodiscard]] ShadowPoints shadow_points(const renderer::SoftShadowMap& map);
 
-/// What of the light each point sees, by Embree, to a standard error of 1/512.
+/// The share of the light that each point sees, by Embree, to a standard error of 1/512.
 [[nodiscard]] std::vector<double> truth_at(const ShadowPoints& points, const reference::ImageTracer& occluder,
                                            const optics::Light& light);
 
-/// Atty et al. 2005, section 4.2.1: over the points that are in shadow or penumbra, by the map or in truth.
+/// Atty et al. 2005, section 4.2.1: over points in shadow or penumbra, by the map or in truth.
 struct SoftShadowErrors {
-    double mean = 0.0;  ///< of absolute differences
-    double rmse = 0.0;
-    double greatest = 0.0;
-    std::size_t shadowed = 0;
-    std::size_t wrong = 0;  ///< of them, those that differ by more than 1/16
+    double mean = 0.0;         ///< mean of absolute differences
+    double rmse = 0.0;         ///< root of the mean square difference
+    double greatest = 0.0;     ///< greatest absolute difference
+    std::size_t shadowed = 0;  ///< points in shadow or penumbra
+    std::size_t wrong = 0;     ///< such points that differ by more than 1/16
 };
 [[nodiscard]] SoftShadowErrors soft_shadow_errors(const renderer::ShadowMapValues& visible,
                                                   const ShadowPoints& points,

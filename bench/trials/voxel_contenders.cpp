@@ -32,7 +32,7 @@ VoxelContender of_method(voxelizer::Voxelizer& voxelizer, voxelizer::Method meth
             }};
 }
 
-/// As the command voxelizes large grids: region by region, each from its own triangles.
+/// Voxelizes as the command does for large grids: region by region, each from its own triangles.
 VoxelContender by_regions(voxelizer::Voxelizer& voxelizer, voxelizer::Method method,
                           const VoxelCase& voxel_case) {
     const auto index = std::make_shared<voxelizer::TriangleIndex>(voxel_case.surface);
@@ -67,7 +67,7 @@ VoxelContender cpu_row_span(const VoxelCase& voxel_case) {
 }
 
 #ifdef CAIRN_BENCH_OPENVDB
-/// Far triangles are left out, for the library takes floats.
+/// Far triangles are left out, because the library takes floats.
 VoxelContender openvdb(const VoxelCase& voxel_case) {
     const double unit = 1.0 / voxel_case.region.voxel_side();
     std::vector<glm::vec3> points;
@@ -90,11 +90,11 @@ VoxelContender openvdb(const VoxelCase& voxel_case) {
 }  // namespace
 
 struct VoxelContenders::Impl {
-    struct Named {
+    struct NamedMethod {
         voxelizer::Method method;
         std::unique_ptr<voxelizer::Voxelizer> voxelizer;
     };
-    std::vector<Named> methods;  ///< conservative first
+    std::vector<NamedMethod> methods;  ///< methods, conservative first
 };
 
 VoxelContenders::VoxelContenders(const gl::ShaderSource& shaders) : impl_(new Impl{{}}) {
@@ -107,7 +107,7 @@ std::vector<VoxelContender> VoxelContenders::at(const VoxelCase& voxel_case) con
     std::vector<VoxelContender> all;
     // The raster methods cut large grids themselves, in tiles of slices.
     const bool is_large = voxelizer::bit_bytes(voxel_case.region.size) > voxelizer::TileOptions{}.whole_bytes;
-    for (const Impl::Named& named : impl_->methods) {
+    for (const Impl::NamedMethod& named : impl_->methods) {
         const bool regions = is_large && named.method == voxelizer::Method::conservative;
         all.push_back((regions ? by_regions : of_method)(*named.voxelizer, named.method, voxel_case));
     }

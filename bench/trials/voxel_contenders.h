@@ -12,24 +12,24 @@
 
 namespace cairn::bench {
 
-/// The surface at one resolution, and the region to voxelize.
+/// A surface at one resolution, and the region to voxelize.
 struct VoxelCase {
     const voxelizer::Surface& surface;
     const voxelizer::GpuSurface& on_gpu;
     voxelizer::Region region;
 };
 
-/// Something that turns triangles into voxels, or only draws them.
+/// A method that turns triangles into voxels, or only draws them.
 struct VoxelContender {
     std::string name;
     std::string driver;
-    /// Voxelizes once. @param voxels  receives the result if not null. @return milliseconds of the work
-    /// alone: no upload, no read-back, no allocation of what can be kept.
+    /// Voxelizes once. @param voxels  receives the result if not null. @return milliseconds, without uploads,
+    /// read-backs and the allocation of what can be kept.
     std::function<double(voxelizer::BitGrid* voxels)> run;
     bool finds_voxels = true;
 };
 
-/// Makes the contenders of a case; kept apart so that compiled programs outlive a case.
+/// Makes the contenders of cases. It outlives a case, so that programs are compiled once.
 class VoxelContenders {
 public:
     explicit VoxelContenders(const gl::ShaderSource& shaders);
@@ -37,14 +37,14 @@ public:
     VoxelContenders(const VoxelContenders&) = delete;
     VoxelContenders& operator=(const VoxelContenders&) = delete;
 
-    /// All contenders at one case, which must outlive what is returned: every method of the voxelizer, plain
-    /// rasterization, and the peers on the CPU.
+    /// All contenders of a case: every method of the voxelizer, plain rasterization, and the peers on the
+    /// CPU. The case must outlive them.
     [[nodiscard]] std::vector<VoxelContender> at(const VoxelCase& voxel_case) const;
 
-    /// All coarser levels of the pyramid, right after their finest level was voxelized: milliseconds.
+    /// Milliseconds of all coarser levels of the pyramid, right after its finest level was voxelized.
     [[nodiscard]] double pyramid_ms(const VoxelCase& voxel_case) const;
 
-    /// What cannot take part in this build, in words; one a line.
+    /// Contenders that are not in this build, in words; one per entry.
     [[nodiscard]] static std::vector<std::string> absent();
 
 private:

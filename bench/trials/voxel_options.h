@@ -9,18 +9,18 @@
 
 namespace cairn::bench {
 
-/// How frames of voxels are rendered, where a chart does not vary that itself; none: the chart's own choice.
+/// Options of rendering voxels that a chart may not vary itself; none: the chart's own choice.
 struct VoxelOptions {
     std::optional<int> tree_n, brick_m;
     std::optional<renderer::Traversal> traversal;
     std::optional<renderer::TileQueries> tile_queries;
-    /// Of rays through volumes.
+    /// Steps of a ray per voxel of a volume.
     std::optional<int> steps_per_voxel;
-    /// Of volumes, in densities per voxel.
+    /// Gradient of a volume from which on it is lit as a surface, in densities per voxel.
     std::optional<double> gradient_threshold;
     std::optional<double> frame_budget_ms;
 
-    /// A chart's own choice, but for what is given here.
+    /// The chart's own choice `own`, with the options that are given here in its place.
     /// @{
     [[nodiscard]] renderer::TreeOptions tree(renderer::TreeOptions own = {}) const {
         own.n = tree_n.value_or(own.n);
@@ -45,12 +45,12 @@ struct VoxelOptions {
     /// @}
 };
 
-/// Which VoxelOptions a chart takes.
+/// The options of VoxelOptions that a chart takes.
 struct VoxelOptionsTaken {
     bool tree = false;  ///< N and M
     bool traversal = false;
     bool tile_queries = false;
-    bool volume = false;  ///< steps per voxel and the gradient's threshold
+    bool volume = false;  ///< steps per voxel, and the gradient's threshold
     bool frame_budget = false;
 };
 

@@ -1,7 +1,6 @@
 #include "renderer/produce/volume_content.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -195,7 +194,6 @@ void VolumeProducer::produce_batch(std::span<const BrickRequest> requests, const
         brick.write_masks(test_, masks_.data() + i * words);
         produced[i] = brick.analyse(test_);
     });
-    using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     upload_.write(0, texels_.data(), texels_.size());
     for (std::size_t i = 0; i < requests.size(); ++i)

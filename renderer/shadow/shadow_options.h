@@ -25,10 +25,15 @@ enum class ShadowFormat : std::uint8_t {
     fp32,
 };
 
+/// The most texels per side of a map of SoftShadowOptions.
+constexpr int max_shadow_map_size = 2048;
+
 /// Of renderer/shadow/soft_shadow_map.h.
 struct SoftShadowOptions {
-    int occluder_size = 128;  ///< texels a side of the occluder map, [1, 2048]; Atty et al.: mostly enough
-    int receiver_size = 256;  ///< of the receiver map and of the soft shadow map, [1, 2048]
+    /// Texels per side of the occluder map, [1, max_shadow_map_size]; Atty et al. find 128 enough mostly.
+    int occluder_size = 128;
+    /// Texels per side of the receiver map and of the soft shadow map, [1, max_shadow_map_size].
+    int receiver_size = 256;
     ShadowPasses passes = ShadowPasses::two;
     ShadowFormat format = ShadowFormat::fp32;
     bool operator==(const SoftShadowOptions&) const = default;

@@ -16,7 +16,6 @@
 namespace cairn::renderer {
 namespace {
 
-constexpr int max_size = 2048;
 constexpr unsigned map_group = 8;  // local_size of the passes over maps
 
 gl::TextureHandle make_map(GLenum format, int size, int levels = 1) {
@@ -81,9 +80,9 @@ glm::vec4 vec_of(const ShadowWindow& window) {
 
 void check_options(const SoftShadowOptions& options) {
     for (const int size : {options.occluder_size, options.receiver_size}) {
-        if (size >= 1 && size <= max_size) continue;
+        if (size >= 1 && size <= max_shadow_map_size) continue;
         throw Error(Fault::usage, "soft shadow map", fmt::format("a map of {} texels a side", size),
-                    fmt::format("choose 1 to {}", max_size));
+                    fmt::format("choose 1 to {}", max_shadow_map_size));
     }
 }
 

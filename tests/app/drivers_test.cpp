@@ -1,6 +1,6 @@
-// The same bits under every way to run the driver: contexts, numbers of threads, widths of vectors. llvmpipe
-// reads these variables when it starts, so each run is a process of its own; another driver ignores them, and
-// must agree with itself.
+// Every way to run the driver gives the same bits: contexts, numbers of threads, widths of vectors. llvmpipe
+// reads its variables when it starts, so each run is a process of its own. Other drivers ignore the
+// variables, and must agree with themselves.
 #include <map>
 #include <string>
 #include <tuple>
@@ -29,7 +29,7 @@ using Environment = std::map<std::string, std::string>;
 
 struct Voxels {
     Answer answer;
-    std::string file;  ///< the .npy, whole
+    std::string file;  ///< bytes of the .npy file
 };
 
 Voxels voxelize(const Scene& scene, const std::string& context, const Environment& environment) {
@@ -46,7 +46,7 @@ Voxels voxelize(const Scene& scene, const std::string& context, const Environmen
 class EveryDriver : public ::testing::TestWithParam<std::tuple<Scene, const char*>> {
 protected:
     void SetUp() override {
-        // Whichever context there is, and no variable set.
+        // Any context, without variables.
         const Voxels voxels = voxelize(scene(), "auto", {});
         ASSERT_EQ(voxels.answer.code, 0) << voxels.answer;
         ASSERT_GT(voxels.answer.json()["occupied"], 1000) << voxels.answer;
@@ -56,7 +56,7 @@ protected:
     [[nodiscard]] static Scene scene() { return std::get<0>(GetParam()); }
     [[nodiscard]] static std::string context() { return std::get<1>(GetParam()); }
 
-    /// @param says  a part of llvmpipe's name then
+    /// @param says  part of llvmpipe's name in such a run
     void expect_same(const Environment& environment, const std::string& says = "") {
         const Voxels voxels = voxelize(scene(), context(), environment);
         std::string variables;

@@ -1,4 +1,4 @@
-// The figures of the command: what they are called, that they are right, and that text and JSON agree.
+// The figures of the command: their names, their values, and that text and JSON agree.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,7 +21,7 @@ void expect_keys(const Json& figures, const std::vector<std::string>& keys) {
         EXPECT_TRUE(figures.contains(key)) << key << " is not in " << figures.dump();
 }
 
-/// Points as a glTF file, its .bin beside it.
+/// Writes points as a glTF file, with its .bin beside it.
 void write_points(const std::string& path, const std::vector<float>& xyz) {
     GltfFile file;
     file.add_mesh({{"mode", 0}, {"attributes", {{"POSITION", file.add_accessor(xyz, "VEC3")}}}});
@@ -30,7 +30,7 @@ void write_points(const std::string& path, const std::vector<float>& xyz) {
     file.write_gltf(path);
 }
 
-/// A triangle that "slide" moves along x by 10 in a second, and "rise" along y by 4.
+/// Writes a triangle with two animations: "slide" moves it along x by 10 per second, "rise" along y by 4.
 void write_animated(const std::string& path) {
     GltfFile file;
     const int positions = file.add_accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
@@ -234,7 +234,7 @@ TEST(AppVoxelize, AResolutionForEachAxisMakesTheArrayOfThatShape) {
     EXPECT_EQ(std::count(npy.values.begin(), npy.values.end(), 1), 2);
     EXPECT_EQ(npy.at(0, 3, 299), 1);
     EXPECT_EQ(npy.at(39, 129, 0), 1);
-    // A cube by three numbers is a cube.
+    // Three equal numbers mean a cube, too.
     EXPECT_EQ(cairn_json({"voxelize", "builtin:knot", "-r", "20,20,20"})["resolution"], 20);
     EXPECT_EQ(cairn_json({"voxelize", "builtin:knot", "-r", "20,20,20"})["occupied"],
               cairn_json({"voxelize", "builtin:knot", "-r", "20"})["occupied"]);
@@ -258,7 +258,7 @@ TEST(AppVoxelize, EveryWayToSayTheGridIsExact) {
 }
 
 TEST(AppVoxelize, EveryFormatIsWrittenFromTheCommandLine) {
-    // Several tiles and regions, no cube; that the files are right is proved where they are written.
+    // Several tiles and regions of a grid that is not a cube. Other tests prove that the files are right.
     const ScratchFolder folder;
     for (const std::string name : {"a.npy", "a.binvox", "a.vox", "a.vdb", "B.NPY"}) {
         const std::vector<std::string> run = {"voxelize", "builtin:cornell", "-r",     "150,140,40",
@@ -346,7 +346,7 @@ TEST(AppCheck, FindsNoDifference) {
 }
 
 TEST(AppCheck, TellsAWrongVoxelizationApart) {
-    // A voxelizer spoilt on purpose: it writes no bit.
+    // A voxelizer broken on purpose: it writes no bit.
     const ScratchFolder folder;
     std::filesystem::copy(CAIRN_SHADER_DIR, folder.file("shaders"), std::filesystem::copy_options::recursive);
     int spoilt = 0;

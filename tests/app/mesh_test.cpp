@@ -11,7 +11,7 @@
 namespace cairn::test {
 namespace {
 
-/// The picture's bytes.
+/// Renders, and returns the bytes of the picture.
 std::string picture_of(const ScratchFolder& folder, const std::vector<std::string>& options) {
     std::vector<std::string> run = {"render", "builtin:knot", "-o",     folder.file("picture.png"),
                                     "--size", "90x61",        "--quiet"};

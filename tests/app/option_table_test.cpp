@@ -1,4 +1,4 @@
-// Options of the command line: what is printed is read as the same options again.
+// Options of the command line: printed options are read as the same options again.
 
 #include "app/options/option_table.h"
 
@@ -30,7 +30,7 @@ using app::OptionTable;
 using app::SceneOptions;
 using app::ViewOptions;
 
-/// Texts of values, each written in the one way that the command prints it.
+/// Random texts of values, as the command prints them.
 class RandomTexts {
 public:
     explicit RandomTexts(unsigned seed) : random_(seed) {}
@@ -39,7 +39,7 @@ public:
     [[nodiscard]] std::string whole(int low, int high) {
         return std::to_string(low + int(random_() % unsigned(high - low + 1)));
     }
-    /// In thousandths.
+    /// A number in thousandths.
     [[nodiscard]] std::string number(double low, double high) {
         const auto steps = unsigned((high - low) * 1000.0);
         return fmt::format("{}", (std::round(low * 1000.0) + double(random_() % steps)) / 1000.0);
@@ -53,7 +53,7 @@ public:
     [[nodiscard]] std::string any_of(const std::vector<std::string>& texts) {
         return texts[random_() % texts.size()];
     }
-    /// Of an option; an empty text for a flag. An option that is not known here fails the test.
+    /// A text for an option; empty if it is a flag. The test fails if the option is unknown here.
     [[nodiscard]] std::string of(const std::string& option);
 
 private:
@@ -126,7 +126,7 @@ std::string RandomTexts::of(const std::string& option) {
         {"--light-disk", [&] { return number(0.001, 9.0); }},
         {"--light-target", [&] { return numbers(3, -9.0, 9.0); }},
         {"--rays", [&] { return whole(1, MAX_SHADOW_RAYS); }},
-        {"--map-size", [&] { return whole(2, 2048); }},
+        {"--map-size", [&] { return whole(2, renderer::max_shadow_map_size); }},
         {"--passes",
          [&] {
              return any_of({"one", "two"});
@@ -148,7 +148,7 @@ std::string RandomTexts::of(const std::string& option) {
     return "";
 }
 
-/// The options that the command line makes of these words.
+/// The options that the command line reads from these words.
 template <typename Options>
 Options parsed(const OptionTable<Options>& table, std::vector<std::string> words) {
     CLI::App verb;
@@ -159,7 +159,7 @@ Options parsed(const OptionTable<Options>& table, std::vector<std::string> words
     return options;
 }
 
-/// What a POSIX shell makes of a line.
+/// The words that a POSIX shell makes of a line.
 std::vector<std::string> shell_words(const std::string& line) {
     std::FILE* const shell =
         popen(("for word in " + line + "; do printf '%s\\0' \"$word\"; done").c_str(), "r");
@@ -188,7 +188,7 @@ void expect_round_trips(const OptionTable<Options>& table) {
             ASSERT_EQ(row.print(options), text) << name;
         }
     }
-    // Any of them together, through the command line.
+    // Random options together, through the command line.
     for (int i = 0; i < 50; ++i) {
         std::vector<std::string> words;
         for (const OptionRow<Options>& row : table) {

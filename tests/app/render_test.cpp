@@ -126,7 +126,7 @@ TEST(AppRender, LooksStraightDown) {
     EXPECT_GT(picture_of(folder, "builtin:knot", {"--camera", "0,-6,0,0,0,0"}).color_count(), 10U);
 }
 
-/// A square in the plane z = 0, and a light of the scene's own.
+/// Writes a square in the plane z = 0, with a light of its own.
 void write_lit_square(const std::string& path, const Json& light, const Json& node_of_light) {
     GltfFile file;
     const int positions = file.add_accessor<float>({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, "VEC3");
@@ -145,7 +145,7 @@ void write_lit_square(const std::string& path, const Json& light, const Json& no
 TEST(AppRender, TheScenesOwnLightGivesItsColorAndDirection) {
     const ScratchFolder folder;
     const std::vector<std::string> front = {"--camera", "0,0,4,0,0,0"};
-    // It shines along -Z of its node: untouched, on the side that the camera sees.
+    // The light shines along -Z of its node: without a rotation, on the side that the camera sees.
     write_lit_square(folder.file("front.gltf"), {{"type", "directional"}, {"color", {1.0, 0.0, 0.0}}},
                      {{"name", "sun"}});
     const std::vector<std::uint8_t> red = picture_of(folder, folder.file("front.gltf"), front).at(48, 32);
@@ -181,14 +181,25 @@ TEST(AppRender, ResolutionIsBounded) {
     EXPECT_LT(bricks("32"), bricks("2048"));
 }
 
+/// Output of a run of `cairn render`.
+struct Rendered {
+    Json figures;
+    std::string png;  ///< the bytes of the file
+};
+
+/// Renders at 96 x 64 pixels with more options.
+Rendered rendered(const ScratchFolder& folder, const std::string& scene,
+                  const std::vector<std::string>& options) {
+    std::vector<std::string> run = {"render", scene, "--size", "96x64", "-o", folder.file("p.png")};
+    run.insert(run.end(), options.begin(), options.end());
+    const Json figures = cairn_json(run);
+    return {figures, read_text(folder.file("p.png"))};
+}
+
 TEST(AppRender, TraversalsAndTileQueriesMakeTheSamePictureInAnotherWay) {
     const ScratchFolder folder;
     const auto render = [&](const std::vector<std::string>& options) {
-        std::vector<std::string> run = {"render", "builtin:knot", "--size",
-                                        "96x64",  "-o",           folder.file("p.png")};
-        run.insert(run.end(), options.begin(), options.end());
-        const auto figures = cairn_json(run);
-        return std::pair(figures, read_text(folder.file("p.png")));
+        return rendered(folder, "builtin:knot", options);
     };
     const auto [usual, expected] = render({});
     EXPECT_EQ(usual["tree_n"], 4);
@@ -209,15 +220,11 @@ TEST(AppRender, TraversalsAndTileQueriesMakeTheSamePictureInAnotherWay) {
 
 TEST(AppRender, TreesHaveTheShapeThatIsAskedFor) {
     const ScratchFolder folder;
-    // Both have 16 voxels across the scene, all of which are as wide as several pixels, so that neither tree
-    // shows coarser ones anywhere.
-    const auto render = [&](const char* resolution, const std::vector<std::string>& options) {
-        std::vector<std::string> run = {"render", "builtin:cornell",   "--size",
-                                        "96x64",  "--max-resolution",  resolution,
-                                        "-o",     folder.file("p.png")};
-        run.insert(run.end(), options.begin(), options.end());
-        const auto figures = cairn_json(run);
-        return std::pair(figures, read_text(folder.file("p.png")));
+    // Both trees have 16 voxels across the scene. Each voxel is several pixels wide, so that neither tree
+    // shows coarser voxels anywhere.
+    const auto render = [&](const char* resolution, std::vector<std::string> options) {
+        options.insert(options.end(), {"--max-resolution", resolution});
+        return rendered(folder, "builtin:cornell", options);
     };
     const auto [usual, expected] = render("16", {});
     const auto [binary, picture] = render("16", {"--tree-n", "2", "--brick-m", "8"});
@@ -232,11 +239,7 @@ TEST(AppRender, TreesHaveTheShapeThatIsAskedFor) {
 TEST(AppRender, AFrameWithinABudgetShowsWhatThereIs) {
     const ScratchFolder folder;
     const auto render = [&](const std::vector<std::string>& options) {
-        std::vector<std::string> run = {"render", "builtin:knot", "--size",
-                                        "96x64",  "-o",           folder.file("p.png")};
-        run.insert(run.end(), options.begin(), options.end());
-        const auto figures = cairn_json(run);
-        return std::pair(figures, read_text(folder.file("p.png")));
+        return rendered(folder, "builtin:knot", options);
     };
     const auto [whole, expected] = render({});
     EXPECT_FALSE(whole.contains("frame_budget_ms"));

@@ -22,7 +22,7 @@ nlohmann::json compared(const std::string& scene, const Arguments& options) {
     return cairn_json(joined({"shadow", scene, "--compare", "embree", "--quiet"}, options));
 }
 
-/// The hard shadow of the finest voxels.
+/// Figures of the hard shadow of the finest voxels.
 nlohmann::json hard(const std::string& scene, int resolution) {
     return compared(scene, {"--method", "voxel", "--size", "300x225", "--pixel-error", "0.001",
                             "--brick-pool", "1024", "--max-resolution", std::to_string(resolution)});
@@ -62,8 +62,8 @@ TEST(AppShadow, SoftVoxelShadowsOfEveryLightAgreeWithEmbree) {
                                              "0.001", "--max-resolution", "1024", "--rays", "64"},
                                             light));
         EXPECT_EQ(figures["rays"], 64);
-        // Not the samples' error, which is under 0.01: rays near the receiver's horizon meet voxels that are
-        // thicker than their surface, and see less of the light.
+        // The samples' error is under 0.01. The rest comes from rays near the receiver's horizon, which meet
+        // voxels that are thicker than their surface, and see less of the light.
         EXPECT_LT(figures["rmse"], 0.075) << light[0] << " " << light[1] << ": " << figures;
         EXPECT_LT(figures["mean_absolute_error"], 0.02) << light[0] << " " << light[1];
     }

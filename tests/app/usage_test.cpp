@@ -29,7 +29,7 @@ void expect_contains(const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << "\"" << part << "\" is not in:\n" << text;
 }
 
-/// An error says so on stderr, on one or two lines, and nothing on stdout.
+/// Checks that an error is on stderr, on one or two lines, and that stdout is empty.
 void expect_error(const Answer& answer, int code, const std::string& part) {
     EXPECT_EQ(answer.code, code) << answer;
     EXPECT_EQ(answer.out, "");
@@ -266,7 +266,7 @@ TEST(AppOutput, ASymbolicLinkStaysOne) {
 TEST(AppOutput, APipeIsWrittenInPlace) {
     const ScratchFolder folder;
     ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
-    // Opened for both, a pipe waits for nobody.
+    // A pipe that is opened for reading and writing does not wait for another process.
     std::fstream pipe(folder.file("pipe"), std::ios::in | std::ios::out);
     ASSERT_TRUE(pipe);
     EXPECT_EQ(cairn({"info", "builtin:cornell", "--quiet", "--json", folder.file("pipe")}).code, 0);
@@ -277,7 +277,7 @@ TEST(AppOutput, APipeIsWrittenInPlace) {
 }
 
 TEST(AppOutput, AFullDiskIsNoSuccess) {
-    if (!std::filesystem::exists("/dev/full")) return;  // Linux has it
+    if (!std::filesystem::exists("/dev/full")) return;  // exists on Linux
     const ScratchFolder folder;
     std::filesystem::create_symlink("/dev/full", folder.file("full.npy"));
     for (const Arguments& arguments :
@@ -322,7 +322,7 @@ struct Interrupted {
                 std::filesystem::directory_iterator(folder.path()),
                 [](const auto& entry) { return entry.path().string().find(".part-") != std::string::npos; });
         };
-        // The command looks once whether it could write: wait for a file that stays.
+        // The command checks first that it can write, and removes that file. Wait for a file that stays.
         int seen = 0;
         for (int i = 0; i < 2000 && seen < 3; ++i) {
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -356,7 +356,8 @@ TEST_P(AppInterrupt, EndsWithCode130OneLineAndNoFile) {
 INSTANTIATE_TEST_SUITE_P(Signals, AppInterrupt, ::testing::Values(SIGINT, SIGTERM),
                          [](const auto& signal) { return signal.param == SIGINT ? "CtrlC" : "Terminate"; });
 
-/// Mesa that claims to know only OpenGL 3.3; Mesa also where another vendor's driver is installed beside it.
+/// The environment of a Mesa that offers only OpenGL 3.3, even if another vendor's driver is installed beside
+/// it.
 const Surroundings old_driver = {
     .environment = {{"MESA_GL_VERSION_OVERRIDE", "3.3"},
                     {"__EGL_VENDOR_LIBRARY_FILENAMES", "/usr/share/glvnd/egl_vendor.d/50_mesa.json"}}};

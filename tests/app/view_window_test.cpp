@@ -15,11 +15,11 @@
 namespace cairn::test {
 namespace {
 
-/// Runs the explorer beside the test, in a folder of its own.
+/// Runs `cairn view` beside the test, in a folder of its own.
 class Session {
 public:
     explicit Session(const std::string& options) {
-        // The process's number becomes known through a file: the shell becomes the program.
+        // The shell writes its process number to a file, and then becomes the program.
         shell(
             fmt::format("cd '{}' && (CAIRN_GL_DEBUG=1 sh -c 'echo $$ >pid; \"{}\" view {} --log --json "
                         "report.json >out 2>log; echo $? >code' &) ",
@@ -49,7 +49,7 @@ public:
             ++found;
         return found;
     }
-    /// Until the log holds so many of these.
+    /// Waits until `what` is in the log `times` times.
     [[nodiscard]] bool wait(const std::string& what, int times) const {
         return wait_for([&] { return count(what) >= times; });
     }

@@ -1,5 +1,5 @@
 #include <algorithm>
-// The explorer without its window: cameras, pace, and pictures that come to be in slices.
+// The viewer without its window: cameras, pace, and pictures that are rendered in slices.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST(OrbitCamera, ZoomIsBoundedBothWays) {
 }
 
 TEST(FlyCamera, MovesAlongItsOwnWays) {
-    FlyCamera fly(from_the_front, 4.0);  // 1 a second
+    FlyCamera fly(from_the_front, 4.0);  // speed: 1 per second
     fly.move({0.0, 0.0, 1.0}, 0.5);
     expect_near(fly.camera().eye, {0.0, 0.0, 3.5});
     fly.move({1.0, 0.0, 0.0}, 0.5);
@@ -142,7 +142,7 @@ protected:
     [[nodiscard]] renderer::Renderer make(const Settings& options = {}) const {
         return voxel_renderer(scene_, scenes::take_snapshot(scene_), options);
     }
-    /// Lets it work until it rests. @return the pieces of work that it took
+    /// Lets the viewer work until it rests. @return the number of pieces of work
     static int rest(app::Viewer& viewer, double& now) {
         int steps = 0;
         while (viewer.rest(now) < 1e6 && steps < 5000) {
@@ -177,7 +177,7 @@ TEST_F(ViewerTest, RowsAreThoseOfTheWholePicture) {
 TEST_F(ViewerTest, RefinesInSlicesToTheUnlimitedPicture) {
     const optics::Image expected = make().render(view_).image;
     renderer::Renderer renderer = make();
-    app::Pace pace(1e-3, 4096.0);  // no time at all
+    app::Pace pace(1e-3, 4096.0);  // almost no time
     app::Refinement refinement(view_);
     int steps = 0;
     for (; !refinement.settled() && steps < 5000; ++steps)
@@ -268,7 +268,7 @@ TEST_F(ViewerTest, TreeIsShownByLevelsAndBricks) {
     view_.show = renderer::Show::levels;
     const optics::Image levels = renderer.render(view_).image;
     std::size_t covered = 0, of_level = 0, marked = 0;
-    // One level holds the whole knot at this size: all its pixels have the hue of that level.
+    // At this size the whole knot is shown at one level: all its pixels have the hue of that level.
     for (std::size_t i = 0; i < surface.rgba.size(); i += 4) {
         if (surface.rgba[i + 3] != 255) continue;
         ++covered;

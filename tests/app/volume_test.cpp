@@ -17,7 +17,7 @@ namespace {
 class VolumeCommand : public ::testing::Test {
 protected:
     [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
-    /// 8 x 4 x 2 samples, all 200.
+    /// Writes a volume of 8 x 4 x 2 samples of 200.
     [[nodiscard]] std::string block() const {
         write_text(
             folder_.path() / "block.mha",

@@ -62,7 +62,7 @@ TEST(BenchVoxelize, SaysThatGnuplotIsMissingAndStillWritesTheTable) {
     EXPECT_FALSE(std::filesystem::exists(folder.file("voxelize.png")));
 }
 
-/// Runs a chart of tiny size. @return its rows, which the CSV has too, under the names of `columns`.
+/// Runs a chart at a tiny size, and checks the CSV's header and number of rows. @return its rows.
 nlohmann::json rows_of(const std::string& chart, const std::string& size, const std::string& scene,
                        const ScratchFolder& folder, const std::string& columns = {}) {
     std::vector<std::string> words = {"bench", chart, "--resolutions",       size, "--runs",
@@ -339,6 +339,41 @@ TEST(BenchCommand, OptionsOfVoxelsChangeWhatAChartMeasures) {
     EXPECT_EQ(small["voxel_options"]["brick-m"], "8");
     EXPECT_EQ(small["voxel_options"]["traversal"], "restart");
     EXPECT_GT(small["measurements"][0]["bricks_produced"], usual["measurements"][0]["bricks_produced"]);
+}
+
+/// Runs the chart "production" at a tiny size, not quietly.
+Answer production_of(const std::vector<std::string>& options, const ScratchFolder& folder) {
+    std::vector<std::string> words = {"bench", "production", "--resolutions",       "16", "--runs",
+                                      "1",     "-o",         folder.path().string()};
+    words.insert(words.end(), options.begin(), options.end());
+    return cairn(words);
+}
+
+TEST(BenchCommand, OptionsOfVolumesAreRefusedIfNoSceneIsAVolume) {
+    const ScratchFolder folder;
+    for (const char* chart : {"production", "exploration", "resolution"}) {
+        for (const char* option : {"--steps-per-voxel", "--gradient-threshold"}) {
+            const Answer answer = cairn({"bench", chart, "--scene", "builtin:cornell", "--scene",
+                                         "builtin:sponge", option, "1", "-o", folder.path().string()});
+            EXPECT_EQ(answer.code, 2) << answer;
+            EXPECT_NE(answer.err.find(option), std::string::npos) << answer;
+            EXPECT_NE(answer.err.find("none of the chart's scenes is a volume"), std::string::npos) << answer;
+        }
+    }
+    EXPECT_EQ(folder.file_count(), 0U);
+}
+
+TEST(BenchCommand, OptionsOfVolumesComeWithANoteOfTheSurfacesBesideThem) {
+    const ScratchFolder folder;
+    const Answer mixed = production_of(
+        {"--scene", "builtin:cornell", "--scene", "builtin:hollow-sphere", "--steps-per-voxel", "2"}, folder);
+    EXPECT_EQ(mixed.code, 0) << mixed;
+    EXPECT_NE(mixed.err.find("--steps-per-voxel changes nothing of builtin:cornell"), std::string::npos)
+        << mixed;
+    EXPECT_EQ(mixed.err.find("builtin:hollow-sphere"), std::string::npos) << mixed;
+    const Answer surface = production_of({"--scene", "builtin:cornell"}, folder);
+    EXPECT_EQ(surface.code, 0) << surface;
+    EXPECT_EQ(surface.err.find("no volume"), std::string::npos) << surface;
 }
 
 TEST(BenchCommand, OptionsOfVoxelsThatAChartVariesItselfAreRefused) {

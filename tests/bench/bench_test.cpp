@@ -1,5 +1,5 @@
-// The exact voxelizer on the CPU that the charts measure beside, and take for the truth where the reference
-// is slow.
+// The exact voxelizer on the CPU, which the charts compare with, and take for the truth where the reference
+// is too slow.
 #include <gtest/gtest.h>
 
 #include "bench/peers/cpu_row_span.h"
@@ -18,7 +18,7 @@ using voxelizer::BitGrid;
 using voxelizer::Region;
 using voxelizer::Surface;
 
-/// Into a grid full of what must not stay.
+/// Voxelizes into a grid full of bits that must be overwritten.
 BitGrid row_spans(const Surface& surface, const Region& region) {
     BitGrid bits(region.size);
     std::fill(bits.words.begin(), bits.words.end(), ~0U);
@@ -33,7 +33,7 @@ TEST(CpuRowSpan, HasTheBitsOfTheExactReferenceForRandomTriangles) {
         const Region region{level, glm::ivec3(0), glm::ivec3(std::min(1 << level, 37))};
         for (int i = 0; i < 300; ++i) {
             LatticeTriangle triangle = random_triangle(random, region.voxel_side());
-            // Fine levels see a corner of the cube alone: bring the triangle there.
+            // The region of fine levels is only a corner of the cube: move the triangle there.
             if (level > 6) {
                 const glm::i64vec3 shift = triangle[0] - random.point(0, 40 * region.voxel_side());
                 for (glm::i64vec3& p : triangle)

@@ -1,4 +1,4 @@
-// The shadow map with percentage-closer filtering that the charts measure beside: against closed forms.
+// The shadow map with percentage-closer filtering that the charts compare with, against closed forms.
 #include "bench/peers/pcf_shadow.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@ using glm::dvec3;
 using test::ShadowScene;
 using test::square;
 
-/// Points of a floor at y = 0, a row along x.
+/// Points of a floor at y = 0, in a row along x.
 struct FloorRow {
     std::vector<dvec3> points, normals;
 
@@ -48,7 +48,7 @@ protected:
     }
 };
 
-// A square of +-0.5 at half the height throws a shadow of +-1 on the floor.
+// A square of +-0.5 at half the height casts a shadow of +-1 on the floor.
 TEST_F(PcfShadowTest, PositionalLightEnlargesASquare) {
     const ShadowScene scene(square({0, 1, 0}, 0.5), square({0, 0, 0}, 3.0));
     const FloorRow row(-2.0, 2.0, 0.3);
@@ -57,8 +57,7 @@ TEST_F(PcfShadowTest, PositionalLightEnlargesASquare) {
             shadow(scene, rectangle_above(2.0, 0.1), row, {.map_size = 512, .kernel = kernel});
         for (std::size_t i = 0; i < shares.size(); ++i) {
             const double from_edge = std::abs(row.points[i].x) - 1.0;
-            // Texels are 2 / 512 wide on the floor; the filter reaches half a kernel and half a texel of its
-            // own.
+            // Texels are 2 / 512 wide on the floor. The filter reaches half a kernel and half a texel.
             if (std::abs(from_edge) < (0.5 * kernel + 1.5) * 2.04 / 512) continue;
             EXPECT_EQ(shares[i], from_edge < 0.0 ? 0.0F : 1.0F)
                 << "x = " << row.points[i].x << ", kernel " << kernel;
@@ -80,7 +79,7 @@ TEST_F(PcfShadowTest, DirectionalLightMovesASquare) {
     }
 }
 
-// One blocker, parallel to the receiver, is the case that the penumbra's estimate is made for.
+// The estimate of the penumbra is made for one blocker parallel to the receiver.
 TEST_F(PcfShadowTest, PenumbraOfASquareIsNearTheClosedForm) {
     const ShadowScene scene(square({0, 1, 0}, 0.5), square({0, 0, 0}, 3.0));
     const FloorRow row(-1.8, 1.8, 0.0);
@@ -100,7 +99,7 @@ TEST_F(PcfShadowTest, PenumbraOfASquareIsNearTheClosedForm) {
     EXPECT_GT(rmse({.map_size = 512, .filter = PcfFilter::fixed, .kernel = 3}), 3.0 * soft);
 }
 
-// The plane of the receiver is what keeps a wide filter from shadowing it with itself.
+// A wide filter does not shadow the receiver with itself, because it compares with the receiver's plane.
 TEST_F(PcfShadowTest, OpenGroundUnderASlantingSoftLightIsLit) {
     const ShadowScene scene(square({0, 1, 0}, 0.5), square({0, 0, 0}, 3.0));
     optics::Light light;

@@ -108,7 +108,7 @@ Cell cell_of(const std::string& text) {
     return *end == '\0' ? Cell(number) : Cell(text);
 }
 
-/// One of bench/results/.
+/// A table of bench/results/.
 Table result(const std::string& name) {
     std::ifstream stream(std::string(CAIRN_BENCH_RESULTS) + "/" + name + ".csv");
     std::string line;

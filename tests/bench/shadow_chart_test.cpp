@@ -1,4 +1,4 @@
-// The charts of shadows, at tiny sizes: every method takes part, and the errors are what they must be.
+// The charts of shadows, at tiny sizes: every method takes part, and its error is within bounds.
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -16,7 +16,7 @@
 namespace cairn::bench {
 namespace {
 
-/// A row of a table by the names of its columns.
+/// A row of a table, read by names of columns.
 class Row {
 public:
     Row(const Table& table, std::size_t index) : table_(table), cells_(table.rows[index]) {}
@@ -111,7 +111,8 @@ void expect_embree_to_come_nearer_with_samples(const Chart& chart) {
     }
 }
 
-// Wrong windows, pixels in another order or a light elsewhere would show as errors like those of no shadow.
+// With wrong windows, pixels in another order or a light elsewhere, errors would be like those without a
+// shadow.
 void expect_every_method_to_show_the_shadow(const Chart& chart) {
     std::map<std::string, double> least;
     for (const Row& row : rows_of(chart)) {
@@ -121,7 +122,7 @@ void expect_every_method_to_show_the_shadow(const Chart& chart) {
         least[line] = std::min(least[line], error);
     }
     for (const auto& [line, error] : least)
-        EXPECT_LT(error, line.ends_with("pcf") ? 0.25 : 0.15) << line;  // its edges have no penumbra
+        EXPECT_LT(error, line.ends_with("pcf") ? 0.25 : 0.15) << line;  // edges without a penumbra
 }
 
 void expect_ours_beside_embree_at_the_same_error(const Chart& chart) {
@@ -137,12 +138,13 @@ void expect_ours_beside_embree_at_the_same_error(const Chart& chart) {
         ++fastest;
         EXPECT_LE(row.number("rmse"), 0.03) << row.shown();
     }
-    EXPECT_GE(fastest, 2);  // Embree's, on the ground and on all
+    EXPECT_GE(fastest, 2);  // Embree's rows, on the ground and on all
     EXPECT_TRUE(has_note(chart, "RMSE 0.03 at most"));
 }
 
-// One test, for the chart takes seconds. Lines that take longer than several budgets are cut short, so the
-// budget leaves room for a loaded machine: a line that is cut ends at voxels too coarse for the bounds below.
+// This is one test, because the chart takes seconds. Lines that take longer than several budgets are cut
+// short, so the budget leaves room for a loaded machine: a line that is cut ends at voxels too coarse for the
+// bounds below.
 TEST_F(ShadowChart, ComparesEveryMethodWithEmbree) {
     const test::ScratchFolder folder;
     ChartOptions options;
@@ -218,8 +220,8 @@ TEST_F(ShadowChart, RaysHaveThePapersFiguresBeside) {
     EXPECT_TRUE(std::filesystem::exists(own.path() / "shadow_rays.csv"));
 }
 
-// Threads of a driver that run together share its limit of loop turns: a budget that is right for one alone
-// lost the last of many rays without a word, and the shadow grew lighter.
+// Threads of a driver that run together share its limit of loop turns. With a budget that is right for a
+// single thread, the last of many rays would be lost silently, and the shadow would be lighter.
 TEST_F(ShadowChart, ManyRaysAreNoLessAccurateThanFew) {
     const ShadowScene scene("builtin:knot");
     constexpr int width = 48;
@@ -243,8 +245,8 @@ TEST_F(ShadowChart, ManyRaysAreNoLessAccurateThanFew) {
     EXPECT_LT(rmse(512), 1.1 * few);
 }
 
-// The tree is rasterized in several batches, whose triangles are placed in one buffer after each other. A
-// batch that is placed while the one before is still drawn shows triangles that are not there, on some runs.
+// The tree is rasterized in several batches, whose triangles are written to one buffer in turn. If a batch
+// were written while the one before is still drawn, some runs would show triangles that are not there.
 TEST_F(ShadowChart, MeshesOfSeveralBatchesAreWhole) {
     const ShadowScene scene("builtin:tree");
     ASSERT_GT(scene.all().triangle_count, std::uint64_t(MESH_BATCH_TRIANGLES));

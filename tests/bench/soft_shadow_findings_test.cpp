@@ -1,5 +1,6 @@
-// What Atty et al. 2005, section 4.2, found of the error of soft shadow maps, as inequalities; and, where
-// ours behave in another way, what is true instead. The chart `cairn bench soft-shadow-map` draws the curves.
+// The findings of Atty et al. 2005, section 4.2, on the error of soft shadow maps, as inequalities; and,
+// where ours behave in another way, what is true instead. The chart `cairn bench soft-shadow-map` draws the
+// curves.
 
 #include <algorithm>
 #include <cmath>
@@ -21,14 +22,14 @@ using bench::ShadowPoints;
 using bench::soft_shadow_errors;
 using bench::SoftShadowErrors;
 using bench::study_light_height;
-using bench::StudySetting;
+using bench::StudyCase;
 using bench::StudyWindow;
 using renderer::ShadowFormat;
 using renderer::ShadowPasses;
 using renderer::SoftShadowMap;
 using renderer::SoftShadowOptions;
 
-constexpr int receiver_size = 96;  // a truth at 32 x 32 points of it
+constexpr int receiver_size = 96;  // texels; the truth is known at 32 x 32 of them
 
 SoftShadowOptions map_of(int size, ShadowPasses passes, ShadowFormat format = ShadowFormat::fp32) {
     return {size, receiver_size, passes, format};
@@ -39,35 +40,35 @@ class Placed {
 public:
     Placed(const ShadowOccluder& occluder, const ShadowPlacement& placement)
         : occluder_(occluder),
-          setting_(occluder, placement),
+          study_(occluder, placement),
           mesh_(occluder.scene(), occluder.snapshot()),
           points_(shadow_points(map(map_of(64, ShadowPasses::one)))),
           truth_(bench::truth_at(points_, reference::ImageTracer(occluder.scene(), occluder.snapshot()),
-                                 setting_.light())) {}
+                                 study_.light())) {}
 
     [[nodiscard]] SoftShadowMap map(const SoftShadowOptions& options,
                                     StudyWindow window = StudyWindow::fitted) const {
         SoftShadowMap map(options);
-        map.compute(setting_.light(), setting_.frustum(window), mesh_, setting_.floor());
+        map.compute(study_.light(), study_.frustum(window), mesh_, study_.floor());
         return map;
     }
     [[nodiscard]] SoftShadowErrors errors(const SoftShadowOptions& options,
                                           StudyWindow window = StudyWindow::fitted) const {
         return soft_shadow_errors(map(options, window).visible(), points_, truth_);
     }
-    /// Mean errors of one and of two passes.
+    /// Mean errors of one pass and of two passes.
     [[nodiscard]] double one(int size, StudyWindow window = StudyWindow::fitted) const {
         return errors(map_of(size, ShadowPasses::one), window).mean;
     }
     [[nodiscard]] double two(int size) const { return errors(map_of(size, ShadowPasses::two)).mean; }
 
-    [[nodiscard]] const StudySetting& setting() const { return setting_; }
+    [[nodiscard]] const StudyCase& study() const { return study_; }
     [[nodiscard]] const ShadowPoints& points() const { return points_; }
     [[nodiscard]] const std::vector<double>& truth() const { return truth_; }
 
 private:
     const ShadowOccluder& occluder_;
-    StudySetting setting_;
+    StudyCase study_;
     renderer::ShadowMesh mesh_;
     ShadowPoints points_;
     std::vector<double> truth_;
@@ -79,18 +80,18 @@ protected:
     const ShadowOccluder knot_{"builtin:knot"};
 };
 
-/// What is seen of the light past the unit square, in closed form.
-double seen_past_square(const StudySetting& setting, const glm::dvec3& point) {
-    const glm::dvec3 light = setting.light().position;
+/// The share of the light that is seen past the unit square, in closed form.
+double seen_past_square(const StudyCase& study, const glm::dvec3& point) {
+    const glm::dvec3 light = study.light().position;
     const double x = -light.x;
     const std::vector<glm::dvec2> polygon = {
         {x - 0.5, -0.5}, {x + 0.5, -0.5}, {x + 0.5, 0.5}, {x - 0.5, 0.5}};
     return visible_past(polygon, light.y, {point.x - light.x, point.z, light.y - point.y},
-                        optics::half_size(setting.light()));
+                        optics::half_size(study.light()));
 }
 
-// What all the figures stand on: the points lie on the floor, where the texels of the map say what they see;
-// and the truth there is the truth.
+// All figures depend on this: the points lie on the floor, at the places of the map's texels, and the truth
+// of these points is right.
 TEST_F(SoftShadowFindings, StandOnTheRightPointsAndTheRightTruth) {
     const Placed placed(square_, {.light_width = 0.6, .lateral = 0.4, .gap = 0.7});
     const renderer::ShadowMapValues visible = placed.map(map_of(50, ShadowPasses::one)).visible();
@@ -99,8 +100,8 @@ TEST_F(SoftShadowFindings, StandOnTheRightPointsAndTheRightTruth) {
     for (std::size_t i = 0; i < placed.points().world.size(); ++i) {
         const glm::dvec3 point = placed.points().world[i];
         const glm::ivec2 texel = placed.points().texels[i];
-        ASSERT_NEAR(point.y, placed.setting().floor_height(), 1e-5) << "point " << i;
-        const double exact = seen_past_square(placed.setting(), point);
+        ASSERT_NEAR(point.y, placed.study().floor_height(), 1e-5) << "point " << i;
+        const double exact = seen_past_square(placed.study(), point);
         ASSERT_NEAR(visible.at(texel.x, texel.y), exact, 1e-4) << "texel " << texel.x << ", " << texel.y;
         ASSERT_NEAR(placed.truth()[i], exact, 0.02) << "texel " << texel.x << ", " << texel.y;
         shadowed += exact < 1.0 ? 1 : 0;
@@ -115,8 +116,8 @@ TEST_F(SoftShadowFindings, CuttingTheTrianglesKeepsTheShadow) {
     EXPECT_EQ(finer.snapshot().triangle_count, 4 * knot_.snapshot().triangle_count);
     const renderer::ShadowMesh mesh(finer.scene(), finer.snapshot());
     SoftShadowMap map(map_of(96, ShadowPasses::two));
-    map.compute(whole.setting().light(), whole.setting().frustum(StudyWindow::fitted), mesh,
-                whole.setting().floor());
+    map.compute(whole.study().light(), whole.study().frustum(StudyWindow::fitted), mesh,
+                whole.study().floor());
     const double cut = soft_shadow_errors(map.visible(), whole.points(), whole.truth()).mean;
     EXPECT_NEAR(cut, whole.two(96), 2e-4);
 }
@@ -185,7 +186,7 @@ TEST_F(SoftShadowFindings, ErrorGrowsWithTheLight) {
 // 4.2.4: a point light's error is "quite large", "an error of 1, over the entire shadow boundary", but "it
 // occurs only at the shadow boundary": within half a texel of the occluder map.
 TEST_F(SoftShadowFindings, APointLightIsWrongAtTheShadowsEdgeAlone) {
-    const int size = 44;  // no multiple of the points a side: they would all lie in the middle of patches
+    const int size = 44;  // no multiple of the points per side: they would all lie in the middle of patches
     const Placed point(knot_, {.light_width = 0.01});
     const Placed small(knot_, {.light_width = 0.2});
     const SoftShadowErrors errors = point.errors(map_of(size, ShadowPasses::two));
@@ -200,7 +201,7 @@ TEST_F(SoftShadowFindings, APointLightIsWrongAtTheShadowsEdgeAlone) {
     const renderer::ShadowMapValues visible = map.visible();
     const renderer::ShadowFrustum frustum = map.frustum();
     const glm::dvec2 texel = (frustum.occluders.high - frustum.occluders.low) / double(size);
-    // A truth around each wrong point, on the floor, one and a half texels of the occluder map away.
+    // The truth on the floor around each wrong point, one and a half texels of the occluder map away.
     const reference::ImageTracer tracer(knot_.scene(), knot_.snapshot());
     for (std::size_t i = 0; i < point.truth().size(); ++i) {
         const glm::ivec2 at = point.points().texels[i];
@@ -212,17 +213,17 @@ TEST_F(SoftShadowFindings, APointLightIsWrongAtTheShadowsEdgeAlone) {
                 1.5 * study_light_height * texel * glm::dvec2(std::cos(angle), std::sin(angle));
             around.world.push_back(point.points().world[i] + glm::dvec3(aside.x, 0.0, aside.y));
         }
-        const std::vector<double> there = bench::truth_at(around, tracer, point.setting().light());
+        const std::vector<double> there = bench::truth_at(around, tracer, point.study().light());
         const auto [least, most] = std::minmax_element(there.begin(), there.end());
         EXPECT_GT(*most - *least, 0.9) << "texel " << at.x << ", " << at.y << " is wrong inside the shadow";
     }
 }
 
 // 4.2.5 finds the least error under the light, growing to both sides. Not so here: an occluder that moves
-// aside under a light parallel to the floor is sheared in light space, no more: depths, patches and the light
-// as seen from the floor stay as they were, and only what its middle sees of the occluder changes. That makes
-// less than a factor of two, to either side; of the knot (which is no mirror image of itself) it falls to one
-// side. The square has no shape to change: its error is the same everywhere.
+// aside under a light parallel to the floor is only sheared in light space. Depths, patches and the light as
+// seen from the floor stay the same; only the part of the occluder that the light's middle sees changes. This
+// changes the error by less than a factor of two, to either side; for the knot, which is not its own mirror
+// image, the error falls to one side. For the square, which is flat, the error is the same everywhere.
 TEST_F(SoftShadowFindings, MovingAsideChangesLittle) {
     std::vector<double> means;
     for (const double lateral : {-1.5, -0.75, 0.0, 0.75, 1.5})

@@ -1,5 +1,5 @@
-// Occlusion queries as a way to decide what to produce (bench/peers/occlusion_queries.h): against rays, which
-// decide it exactly, and the tests of boxes against exact rays through the pixels.
+// Occlusion queries that decide which bricks to produce (bench/peers/occlusion_queries.h), against rays,
+// which decide it exactly; and the tests of boxes, against exact rays through the pixels.
 #include <cmath>
 #include <functional>
 #include <random>
@@ -34,7 +34,7 @@ protected:
     }
 };
 
-/// The eye in the middle, looking along an axis: what is near is all around it.
+/// A view from the middle along an axis: near things are all around the eye.
 renderer::View from_within(const FrameCase& frame_case) {
     renderer::View view = frame_case.view(size, size);
     view.camera.eye = 0.5 * (frame_case.bounds().low + frame_case.bounds().high);
@@ -48,8 +48,8 @@ renderer::View nearer(const FrameCase& frame_case) {
     return view;
 }
 
-/// Rays need no brick that the queries left out: the picture made of what they chose is that of the rays, bit
-/// for bit, without a tile being missed. And the counts are as far apart as what each knows.
+/// Rays need no brick that the queries left out: the picture of the bricks that queries chose is that of the
+/// rays, bit for bit, without a missing tile. Rays produce the fewest bricks, then queries, then the frustum.
 void expect_nothing_missed(const FrameCase& frame_case, renderer::View view,
                            const std::function<std::unique_ptr<VisibleBricks>(const renderer::View&)>& make) {
     view.shadow.kind = renderer::ShadowQuality::Kind::none;
@@ -60,9 +60,9 @@ void expect_nothing_missed(const FrameCase& frame_case, renderer::View view,
     EXPECT_EQ(by_frustum.image.rgba, image.rgba);
     EXPECT_EQ(by_frustum.bricks_produced, by_frustum.tiles_in_frustum);
     for (const QuerySchedule schedule :
-         {QuerySchedule{.tests = 16}, QuerySchedule{.tests = 32, .loads_a_test = 0.25},
+         {QuerySchedule{.tests = 16}, QuerySchedule{.tests = 32, .loads_per_test = 0.25},
           QuerySchedule{.tests = 16, .overlapped = false}}) {
-        SCOPED_TRACE(fmt::format("{} tests, {} loads a test, {}", schedule.tests, schedule.loads_a_test,
+        SCOPED_TRACE(fmt::format("{} tests, {} loads per test, {}", schedule.tests, schedule.loads_per_test,
                                  schedule.overlapped ? "overlapped" : "waiting"));
         const Visibility by_queries = make(view)->by_queries(schedule);
         EXPECT_EQ(by_queries.missed, 0U);
@@ -71,7 +71,7 @@ void expect_nothing_missed(const FrameCase& frame_case, renderer::View view,
         EXPECT_LE(by_rays.bricks_produced, by_queries.bricks_produced);
         EXPECT_LE(by_queries.bricks_produced, by_frustum.bricks_produced);
         EXPECT_LE(by_queries.bricks_used, by_rays.bricks_produced);
-        EXPECT_GT(by_queries.bricks_used, 0U);  // the views show something
+        EXPECT_GT(by_queries.bricks_used, 0U);  // the views are not empty
         EXPECT_GT(by_queries.queries, 0U);
     }
 }
@@ -89,7 +89,7 @@ TEST_F(VisibilityTest, NoRayNeedsWhatTheQueriesLeftOut) {
 }
 
 TEST_F(VisibilityTest, WhatAWallHidesIsNotProduced) {
-    // Straight at the back of the Cornell box: its wall is all there is to see.
+    // A view straight at the back of the Cornell box: only its wall is visible.
     const FrameCase frame_case("builtin:cornell");
     const glm::dvec3 middle = 0.5 * (frame_case.bounds().low + frame_case.bounds().high);
     const glm::dvec3 extent = frame_case.bounds().high - frame_case.bounds().low;
@@ -104,7 +104,7 @@ TEST_F(VisibilityTest, WhatAWallHidesIsNotProduced) {
     EXPECT_LT(2 * by_queries.bricks_produced, by_frustum.bricks_produced);
 }
 
-/// Does a ray through a pixel's centre come through the box, before it gets to the pixel's depth?
+/// Whether a ray through a pixel's centre meets the box before the pixel's depth.
 bool reaches(const interop::MarchView& view, const Box& box, const std::vector<float>& inverse_depths,
              double depth_slack) {
     const glm::dvec3 eye(view.eye);
@@ -112,7 +112,7 @@ bool reaches(const interop::MarchView& view, const Box& box, const std::vector<f
         for (int x = 0; x < view.width; ++x) {
             const glm::dvec2 place =
                 (glm::dvec2(x, y) + 0.5) / glm::dvec2(view.width, view.height) * 2.0 - 1.0;
-            // Along the view it advances by 1 a unit.
+            // The ray advances by 1 along the view per unit of its parameter.
             const glm::dvec3 ray =
                 glm::dvec3(view.forward) + place.x * glm::dvec3(view.right) - place.y * glm::dvec3(view.up);
             const glm::dvec3 a = (box.low - eye) / ray;
@@ -152,7 +152,7 @@ TEST_F(VisibilityTest, ABoxIsVisibleWhereARayThroughAPixelReachesIt) {
         std::vector<Box> boxes;
         for (int i = 0; i < 200; ++i) {
             const double side = std::exp2(4.0 + 6.0 * unit());
-            // Some are beside the picture, some around the eye.
+            // Some boxes are beside the picture, some around the eye.
             const glm::dvec2 place = 2.4 * glm::dvec2(unit(), unit()) - 1.2;
             const glm::dvec3 middle = eye + std::exp2(12.5 * unit()) *
                                                 (glm::dvec3(view.forward) + place.x * glm::dvec3(view.right) +
@@ -165,7 +165,7 @@ TEST_F(VisibilityTest, ABoxIsVisibleWhereARayThroughAPixelReachesIt) {
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             const Box& box = boxes[i];
             const glm::dvec3 far = glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye));
-            // A pixel is about 1/32 of the distance wide here, and the tests add a 64th of one.
+            // A pixel is about 1/32 of the distance wide here, and the tests add a 64th of a pixel.
             const double pixel = 2.0 * glm::length(glm::dvec3(view.up)) / seen.size.height;
             const double slack = glm::length(far) * pixel / 16.0;
             const bool must = reaches(view, box, inverse_depths, 1e-5);

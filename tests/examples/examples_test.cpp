@@ -1,5 +1,5 @@
-// The examples, each run as its user runs it, against what the library and the reference say; and the README,
-// which shows a part of one.
+// The examples, run as their users run them, against the library and the reference; and the README, which
+// shows a part of one.
 
 #include <algorithm>
 #include <array>
@@ -65,7 +65,7 @@ Picture picture_of(const optics::Image& image) {
 
 class Examples : public testing::Test {
 protected:
-    /// Runs an example to its end; @return what it printed.
+    /// Runs an example to its end. @return its output.
     std::string run(const std::string& arguments, const std::string& through = "") {
         const std::string line =
             fmt::format("{} {}/{} >{}", through, CAIRN_EXAMPLES, arguments, folder_.file("out"));

@@ -1,5 +1,5 @@
-// Who links a library out of its build tree sees its faces, and none of its other headers: neither by their
-// names from the project's root, nor OpenGL's loader.
+// A target that links a library of the build tree sees its public headers alone: not the others by their
+// names from the project's root, and not OpenGL's loader.
 #include <cairn/renderer/renderer.h>
 
 #if __has_include(<base/error.h>) || __has_include(<renderer/renderer.h>) || __has_include(<glad/gl.h>)

@@ -1,5 +1,5 @@
-// Every file of fuzz/corpus through the entry point that fuzzers call: a crash that was mended stays mended.
-// A file that breaks a promise ends the program, after its name was printed.
+// Runs every file of fuzz/corpus through the entry point that fuzzers call, so that a crash that was mended
+// stays mended. A file that breaks a promise ends the program, after its name was printed.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -16,7 +16,7 @@ namespace cairn::fuzz {
 namespace {
 
 struct Target {
-    const char* name;  ///< and folder of its corpus
+    const char* name;  ///< name of the fuzzer and of its corpus' folder
     void (*run)(Bytes);
     std::size_t least_files;
 };
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus,
                                          Target{"transfer", transfer, 8}),
                          [](const auto& target) { return target.param.name; });
 
-// A fuzzer is worth no more than its promises: one that is broken must end the program.
+// A fuzzer finds only broken promises, so a broken promise must end the program.
 TEST(CorpusDeathTest, BrokenPromisesEndTheProgram) {
     EXPECT_DEATH(broken_promise("none"), "broken promise: none");
 }

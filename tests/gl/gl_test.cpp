@@ -30,7 +30,7 @@ using cairn::test::GlTest;
 using cairn::test::ScratchFolder;
 using cairn::test::write_text;
 
-/// What `work` throws; a failure when it throws nothing.
+/// The error that `work` throws. The test fails if it throws none.
 template <typename Work>
 Error error_of(Work work) {
     try {
@@ -80,7 +80,7 @@ TEST_F(GlTest, OffersWhatTheProgramNeeds) {
 }
 
 TEST_F(GlTest, DebugLogCatchesAnError) {
-    glBindBuffer(GL_ARRAY_BUFFER, 12345);  // core profiles know only names that they made
+    glBindBuffer(GL_ARRAY_BUFFER, 12345);  // core profiles accept only names that they made
     const std::vector<std::string> messages = context().debug_log().take();
     EXPECT_FALSE(messages.empty());
     EXPECT_TRUE(context().debug_log().take().empty()) << "take() must empty the log";
@@ -126,7 +126,7 @@ TEST_F(GlTest, BufferThatDoesNotFitSaysSo) {
     EXPECT_EQ(error.fault(), Fault::memory);
     EXPECT_NE(std::string(error.what()).find("brick pool"), std::string::npos) << error.what();
     EXPECT_FALSE(error.way_out().empty());
-    (void)context().debug_log().take();  // KHR_debug reports it too, and rightly
+    (void)context().debug_log().take();  // KHR_debug reports it too
 }
 
 TEST_F(GlTest, TimerMeasures) {
@@ -139,7 +139,7 @@ TEST_F(GlTest, TimerMeasures) {
     EXPECT_LT(timer.milliseconds(), 10000.0);
 }
 
-/// A folder of shaders for --shader-dir.
+/// A folder of shaders, as for --shader-dir.
 class Shaders : public GlTest {
 protected:
     void write(const std::string& name, const std::string& text) { write_text(folder_.path() / name, text); }
@@ -238,7 +238,7 @@ TEST_F(Macros, ANameThatNobodyDefinedIsAnErrorInIf) {
               "top.comp.glsl:2: \"B\" is not defined");
     EXPECT_EQ(fault_of("#if defined(A)\n#endif\n", {{"A", "0"}}),
               "top.comp.glsl:1: \"defined\" is not defined");
-    // A name counts from its definition on.
+    // A name is defined from its definition on.
     EXPECT_EQ(fault_of("#if LATE\n#endif\n#define LATE 1\n"), "top.comp.glsl:1: \"LATE\" is not defined");
 }
 

@@ -1,6 +1,6 @@
 // Every shader that a program is built from compiles: on the driver, and with the reference compiler, which
-// is stricter than drivers are. Which definitions an entry point (<verb>.<stage>.glsl) is compiled with, the
-// libraries say that build programs from it.
+// is stricter than drivers. The libraries list the definitions that they compile each entry point
+// (<verb>.<stage>.glsl) with.
 
 #include <algorithm>
 #include <cstdlib>
@@ -36,10 +36,10 @@ struct Case {
     std::string name;
     std::string stage;
     std::vector<Defines> sets;
-    std::size_t number = 0;  ///< among those of the entry point
+    std::size_t number = 0;  ///< number of the first set among those of the entry point
 };
 
-/// Sets of one test. A process for each would take longer to start than to compile.
+/// Sets per test. With a process per set, starting would take longer than compiling.
 constexpr std::size_t sets_per_case = 6;
 
 const std::map<std::string, GLenum> stages = {{"comp", GL_COMPUTE_SHADER},
@@ -47,13 +47,13 @@ const std::map<std::string, GLenum> stages = {{"comp", GL_COMPUTE_SHADER},
                                               {"frag", GL_FRAGMENT_SHADER},
                                               {"geom", GL_GEOMETRY_SHADER}};
 
-/// "comp" of "march/march.comp.glsl"; empty for a fragment such as "march/march.glsl".
+/// The stage of a file, "comp" of "march/march.comp.glsl"; empty if it is included, as "march/march.glsl".
 std::string stage_of(const std::filesystem::path& name) {
     const std::string inner = name.stem().extension().string();
     return inner.empty() ? "" : inner.substr(1);
 }
 
-/// Rays of surfaces, for the shader of a chart that takes the place of the primary one.
+/// The sets of rays of surfaces, for a chart's shader that takes the place of the primary one.
 std::vector<ShaderVariants> of_charts() {
     std::vector<Defines> sets;
     for (const renderer::MarchSetting& setting : renderer::march_settings()) {
@@ -68,7 +68,7 @@ std::vector<ShaderVariants> of_charts() {
     return {{"bench/saturate.comp.glsl", sets}, {"bench/test_box.frag.glsl"}, {"bench/test_box.vert.glsl"}};
 }
 
-/// By entry point. Sets that differ only in macros that the text does not name are one.
+/// All sets, by entry point. Sets that differ only in macros that the text does not name count as one.
 std::map<std::string, std::vector<Defines>> all_variants() {
     std::map<std::string, std::vector<Defines>> all;
     for (const auto& list : {voxelizer::shader_variants(), renderer::shader_variants(), of_charts()}) {
@@ -118,7 +118,7 @@ void PrintTo(const Case& c, std::ostream* out) {
         *out << "\n " << text_of(defines);
 }
 
-/// A name of letters, digits and underscores, as GoogleTest wants.
+/// A name of letters, digits and underscores, as GoogleTest requires.
 std::string test_name(const ::testing::TestParamInfo<Case>& info) {
     std::string name = fmt::format("{}_{}", info.param.name, info.param.number);
     for (char& c : name) {

@@ -1,4 +1,4 @@
-// Windows; run on a display, which tests/support/with_xvfb.sh provides.
+// Windows, on a display that tests/support/with_xvfb.sh provides.
 
 #include "gl/window.h"
 
@@ -11,7 +11,7 @@ namespace cairn::gl {
 namespace {
 
 TEST(Window, OpensDrawsAndCloses) {
-    for (int round = 0; round < 2; ++round) {  // GLFW must start anew after the last window is gone
+    for (int round = 0; round < 2; ++round) {  // GLFW must start again after the last window is closed
         const std::unique_ptr<Window> window = create_window("cairn test", {320, 240}, true);
         EXPECT_EQ(window->backend(), "glfw");
         EXPECT_NE(window->native(), nullptr);

@@ -1,5 +1,4 @@
-// Whether the documents keep what they say: docs/decisions/ names what holds each decision, and every link
-// leads somewhere.
+// The documents: docs/decisions/ names what holds each decision, and every link leads to something.
 
 #include <algorithm>
 #include <cctype>
@@ -28,7 +27,7 @@ struct Link {
     std::string target;
 };
 
-/// The links of a line of Markdown, as [text](target).
+/// The links [text](target) in a line of Markdown.
 std::vector<Link> links_of(const std::string& line) {
     static const std::regex link(R"(\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\))");
     std::vector<Link> links;
@@ -37,7 +36,7 @@ std::vector<Link> links_of(const std::string& line) {
     return links;
 }
 
-/// The lines of a Markdown file that are prose: code blocks are left empty, so that line numbers stay.
+/// The lines of a Markdown file. Lines of code blocks are empty, so that line numbers stay.
 std::vector<std::string> prose_of(const fs::path& file) {
     std::istringstream text(read_text(file));
     std::vector<std::string> lines;
@@ -86,7 +85,7 @@ struct Decision {
         const auto found = fields.find(name);
         return found != fields.end() ? found->second : "";
     }
-    /// The place that a field links to, or nothing.
+    /// The place that a field links to, or an empty text.
     [[nodiscard]] std::string linked(const std::string& name) const {
         const std::vector<Link> links = links_of(field(name));
         if (links.size() != 1) return {};
@@ -118,7 +117,7 @@ std::vector<Decision> read_decisions(const fs::path& root) {
     return decisions;
 }
 
-/// What is wrong with what a decision is held by: "path" or "path::Suite.Name". Nothing if all is well.
+/// The fault of a place that holds a decision, "path" or "path::Suite.Name"; empty if there is none.
 std::string holder_fault(const fs::path& root, const std::string& holder) {
     static const std::regex form(R"(^([^:]+?)(?:::(\w+)\.(\w+))?$)");
     std::smatch parts;
@@ -131,7 +130,7 @@ std::string holder_fault(const fs::path& root, const std::string& holder) {
     return fmt::format("{} has no test {}.{}", parts[1].str(), parts[2].str(), parts[3].str());
 }
 
-/// What is wrong with the links between a decision and the one that replaces it, or that it replaces.
+/// The faults of the links between a decision and the one that replaces it, or that it replaces.
 std::string succession_fault(const Decision& decision, const std::vector<Decision>& all) {
     auto answers = [&](const std::string& place, const std::string& name) {
         return std::any_of(all.begin(), all.end(), [&](const Decision& other) {
@@ -149,7 +148,7 @@ std::string succession_fault(const Decision& decision, const std::vector<Decisio
     return {};
 }
 
-/// How often the index links to a place.
+/// The number of links from the index to a place.
 std::map<std::string, int> index_of(const fs::path& root) {
     std::map<std::string, int> index;
     for (const std::string& line : prose_of(root / decisions_folder / "README.md"))
@@ -158,7 +157,7 @@ std::map<std::string, int> index_of(const fs::path& root) {
     return index;
 }
 
-/// All that is wrong with docs/decisions/, as "place: fault".
+/// All faults of docs/decisions/, as "place: fault".
 std::vector<std::string> decision_faults(const fs::path& root, std::size_t* count = nullptr) {
     static const std::regex day(R"(\d{4}-\d{2}-\d{2})");
     const std::vector<Decision> decisions = read_decisions(root);
@@ -181,8 +180,8 @@ std::vector<std::string> decision_faults(const fs::path& root, std::size_t* coun
     return faults;
 }
 
-/// What is wrong with a link of a file, or nothing. A link whose text is one `name` and that leads to source
-/// code says that the name occurs there.
+/// The fault of a link of a file; empty if there is none. If the link's text is one `name` and its target is
+/// source code, the name must occur there.
 std::string link_fault(const fs::path& root, const fs::path& file, const Link& link) {
     static const std::regex code(R"(^`(?:\w+(?:::|\.|->))*(\w+)(?:\(\))?`$)");
     if (link.target.starts_with("http://") || link.target.starts_with("https://")) return {};
@@ -217,7 +216,7 @@ std::vector<fs::path> documents(const fs::path& root) {
     return files;
 }
 
-/// Every link of the documents that leads nowhere, as "file:line: fault".
+/// Every broken link of the documents, as "file:line: fault".
 std::vector<std::string> link_faults(const fs::path& root, int* count = nullptr) {
     std::vector<std::string> faults;
     for (const fs::path& file : documents(root)) {

@@ -1,4 +1,4 @@
-// Which folder may include which: the table of the way of the data, read out of every #include.
+// Which folder may include which: every #include is checked against a table.
 
 #include <algorithm>
 #include <array>
@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the files of a folder may include of ours. Every name is the beginning of a path from the project's
-/// root.
+/// The project's headers that the files of a folder may include. Every name is the beginning of a path from
+/// the project's root.
 struct Folder {
     std::string_view name;
     std::vector<std::string_view> may_include;
@@ -41,10 +41,10 @@ const std::vector<Folder> folders = {
     {"gl/", {"gl/", "shaders/", "base/"}},
     {"scenes/", {"scenes/", "base/"}},
     {"optics/", {"optics/", "scenes/", "base/"}},
-    // Of optics/ only the curve of sRGB, which files of voxels are written with.
+    // The only header of optics/ is the sRGB curve, which voxel files are written with.
     {"voxelizer/", {"voxelizer/", "optics/srgb.h", "gl/", "scenes/", "shaders/interop/", "base/"}},
-    // Of the voxelizer only plain types and what defines an exact answer: none of what the
-    // reference is to judge.
+    // The voxelizer's headers are plain types and the definition of exact voxels, and nothing that the
+    // reference judges.
     {"reference/",
      {"reference/", "optics/", "scenes/", "shaders/interop/", "base/", "voxelizer/grid.h",
       "voxelizer/bit_grid.h", "voxelizer/surface/surface.h", "voxelizer/surface/exact_mask.h",
@@ -82,13 +82,13 @@ const std::vector<Folder> folders = {
     {"fuzz/", {""}},
 };
 
-/// A library of others that only some places may see, and tests/: the rest does not depend on it.
+/// A library of others that only some places, and tests/, may include.
 struct External {
     std::string_view name;
     std::vector<std::string_view> seen_by;
 };
 
-// The first that a name begins with counts.
+// The first entry that a name begins with counts.
 const std::vector<External> externals = {
     {"tiny_gltf", {"scenes/gltf/"}},
     {"draco/", {"scenes/gltf/"}},
@@ -118,7 +118,7 @@ const Folder* folder_of(std::string_view file) {
     return nullptr;
 }
 
-/// What is wrong with one #include, or nothing.
+/// The fault of an #include; empty if there is none.
 std::string fault_of(const fs::path& root, const std::string& file, bool quoted, const std::string& name) {
     const Folder* folder = folder_of(file);
     if (folder == nullptr) return "the table names no such folder";
@@ -133,7 +133,7 @@ std::string fault_of(const fs::path& root, const std::string& file, bool quoted,
         }
         return {};
     }
-    // Shaders name their files from shaders/, all else from the project's root.
+    // Shaders include by paths from shaders/, all other files by paths from the project's root.
     const bool from_shaders = file.starts_with("shaders/") && fs::exists(root / "shaders" / name);
     const std::string path = from_shaders ? "shaders/" + name : name;
     if (!fs::exists(root / path))

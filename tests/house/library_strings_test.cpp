@@ -1,5 +1,5 @@
-// Libraries speak to libraries: no text of theirs names an option of the command. It says what the caller can
-// change by its name in the library, and the command puts its option there (app/terminal/option_names.cpp).
+// No text of a library names an option of the command. It names what the caller can change by its name in the
+// library, and the command replaces that name by its option (app/terminal/option_names.cpp).
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ constexpr std::array libraries = {"base",      "gl",        "scenes",   "optics"
                                   "voxelizer", "reference", "renderer", "shaders"};
 
 struct Literal {
-    int line = 0;  ///< where it begins, from 1
+    int line = 0;  ///< line where it begins, from 1
     std::string text;
 };
 

@@ -7,7 +7,7 @@
 namespace cairn::optics {
 namespace {
 
-// Where the root can be taken by hand: (1/2)^2.4 comes back as 1/2.
+// Values whose root can be taken by hand: (1/2)^2.4 becomes 1/2.
 TEST(Srgb, IsTheClosedFormInBothPieces) {
     EXPECT_EQ(srgb_from_linear(0.0), 0.0);
     EXPECT_NEAR(srgb_from_linear(1.0), 1.0, 1e-15);

@@ -48,14 +48,14 @@ TEST(AreaLight, DiskPastAnEdgeIsACircularSegment) {
     Light light = light_above(2.0, 0.5, 0.5);
     light.shape = LightShape::disk;
     for (const double x : {-0.4, -0.2, 0.0, 0.3}) {
-        // From (x, 0, 0) past x = 0 at half the way, what is below -x of the light's plane is seen.
+        // From (x, 0, 0) past x = 0 at half the way, the part of the light's plane below -x is seen.
         const double h = -x / 0.5;
         const double truth = 1.0 - (std::acos(h) - h * std::sqrt(1.0 - h * h)) / std::numbers::pi;
         expect_visible(seen_from(scene, {x, 0.0, 0.0}, light), truth);
     }
 }
 
-/// Of a cone of directions from (x, 0, 0), the share of its solid angle that passes x < 0 at height 1, summed
+/// The share of the solid angle of a cone of directions from (x, 0, 0) that passes x < 0 at height 1, summed
 /// over a grid of directions.
 double share_past_the_edge(double x, const dvec3& axis, double sine) {
     double all = 0.0;
@@ -85,7 +85,8 @@ TEST(AreaLight, SphereIsMeasuredInSolidAngle) {
     }
 }
 
-// It stands as a sphere far away: from everywhere in the scene it has the same direction and the same angle.
+// A directional light with an angle is like a sphere far away: from everywhere in the scene it has the same
+// direction and the same angle.
 TEST(AreaLight, DirectionalLightIsAConeOfItsAngle) {
     const ShadowScene scene(square({10.0, 1.0, 0.0}, 10.0), square({0, 0, 0}, 2.0));
     const Light light = {.towards = {0.5, 2.0, 0.0}, .angle = 0.4};
@@ -107,7 +108,7 @@ TEST(AreaLight, BelowTheTangentPlaneNothingIsSeen) {
     }
 }
 
-// The standard error is honest: over many points, the truth is where it says.
+// The standard error is right: over many points, the truth lies as far away as it says.
 TEST(AreaLight, StandardErrorTellsTheSpread) {
     const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.5, 0.3), square({0, 0, 0}, 2.0));
     const Light light = light_above(2.0, 0.4, 0.4);
@@ -150,8 +151,8 @@ TEST(AreaLight, DoesNotDependOnTheThreads) {
         EXPECT_EQ(alone[i].visible, together[i].visible) << "point " << i;
 }
 
-// So many samples and no more, for a peer of shadow rays: their error against the closed form falls with
-// their count, and packets find what single rays find.
+// Exact numbers of samples, as a peer of shadow rays: their error against the closed form falls with their
+// number, and packets find the same as single rays.
 TEST(AreaLight, ExactStrataTakeThatManySamples) {
     const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.5), square({0, 0, 0}, 2.0));
     const Light light = light_above(2.0, 0.4, 0.4);

@@ -1,4 +1,4 @@
-// The truth's voxels, its comparison, and its images; separating_axes_test.cpp proves the predicate.
+// The reference's voxels, its comparison, and its images. separating_axes_test.cpp proves the predicate.
 #include <algorithm>
 #include <vector>
 
@@ -53,7 +53,7 @@ TEST(Comparison, CountsMissingAndExtra) {
     EXPECT_EQ(comparison.first_different[1], glm::ivec3(39, 2, 1));
 }
 
-/// One square, upright, in the plane z = `z`, and a camera at z = 4 that sees it.
+/// An upright square in the plane z = `z`, and a camera at z = 4 that sees it.
 class Image : public ::testing::Test {
 protected:
     void add_square(float low_x, float low_y, float high_x, float high_y, float z, int material = -1) {
@@ -103,7 +103,7 @@ TEST_F(Image, LetsShadowsFallThroughHoles) {
     material.texture = 0;
     material.alpha_mode = scenes::AlphaMode::mask;
     add_square(-1.0F, -1.0F, 1.0F, 1.0F, 0.0F);
-    // Behind the camera, so that only shadow rays meet it; its left half is a hole.
+    // A square behind the camera, so that only shadow rays meet it. Its left half is a hole.
     add_square(-1.0F, -1.0F, 1.0F, 1.0F, 6.0F, 0);
     const ReferenceImage image = trace();
     EXPECT_EQ(image.lit[1], 1);
@@ -123,7 +123,7 @@ TEST_F(Image, FindsTheSameByPacketsAsByOneRayAtATime) {
         const ReferenceImage one = tracer.trace(camera_, light_, size.x, size.y);
         const ReferenceImage eight =
             tracer.trace(camera_, light_, size.x, size.y, 0, ImageTracer::Rays::packets);
-        // Where two squares meet, either may be nearer by a rounding.
+        // At places where two squares meet, rounding decides which one is nearer.
         int differing = 0;
         for (std::size_t i = 0; i < one.depth.size(); ++i) {
             const bool both_empty = std::isinf(one.depth[i]) && std::isinf(eight.depth[i]);

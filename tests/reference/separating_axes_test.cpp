@@ -1,5 +1,5 @@
-// The truth against a second one: separating axes beside clipping (clipped_triangle.h), on triangles and
-// boxes that just touch, or just do not.
+// The truth against a second one: separating axes against clipping (clipped_triangle.h), on triangles and
+// boxes that only just touch, or only just do not.
 #include "reference/separating_axes.h"
 
 #include <cstdlib>
@@ -54,7 +54,7 @@ void put_box_at(Trial& trial, Random& random, const glm::i64vec3& point, const g
     trial.high = trial.low + size;
 }
 
-/// Triangles within +-reach, needles, segments and points, and a box that begins where they are.
+/// Triangles, needles, segments and points within +-reach, and a box that begins on one.
 Trial within(std::int64_t reach, Random& random) {
     Trial trial;
     LatticeTriangle& t = trial.triangle;
@@ -79,7 +79,8 @@ Trial within(std::int64_t reach, Random& random) {
     return trial;
 }
 
-/// Corners on voxel planes, some beside them by a unit, and a voxel near by: contact in every way there is.
+/// Triangles with corners on voxel planes, or one unit beside them, and a voxel nearby: contacts of every
+/// kind.
 Trial on_lattice(Random& random) {
     Trial trial;
     LatticeTriangle& t = trial.triangle;
@@ -104,7 +105,8 @@ Trial on_lattice(Random& random) {
 
 struct Tally {
     int met = 0;
-    int just = 0;  ///< a box smaller by a unit on every side is missed, or one larger by that is met
+    /// Pairs for which a box smaller by a unit on every side is missed, or a box larger by a unit is met.
+    int just = 0;
 };
 
 void count(Tally& tally, const Trial& trial, bool met) {
@@ -139,7 +141,8 @@ TEST(SeparatingAxes, AgreeWithClippingOnAMillionTrianglesOnVoxelPlanes) {
     expect_agreement<Int128>(2, 1000000, on_lattice);
 }
 
-// 128 bits are all that both use above: numbers without end tell whether they are enough where they must be.
+// Both use 128 bits above. Numbers of any length show whether 128 bits are enough for the greatest
+// coordinates.
 TEST(SeparatingAxes, AgreeWithClippingInNumbersWithoutEnd) {
     expect_agreement<mpz_class>(3, 100000, [](Random& random) { return within(farthest, random); });
 }

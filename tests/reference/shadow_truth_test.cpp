@@ -1,4 +1,5 @@
-// What a shadow is judged by: which pixels can be shadowed, how an error is counted, and the answers on disk.
+// The truth of shadows: which pixels can be shadowed, how errors are counted, and the answers that are kept
+// on disk.
 #include "reference/shadow_truth.h"
 
 #include <cmath>
@@ -73,7 +74,7 @@ TEST(ShadowTruth, SoftSharesOfAPointAreTheHardOnes) {
             .shares;
     const ShadowError error = shadow_error(soft, hard);
     EXPECT_EQ(error.pixels, receivers.pixels.size());
-    // Rays of the picture and of single points begin at slightly other places.
+    // Rays of the picture and rays of single points begin at slightly different places.
     EXPECT_LT(error.mean_absolute(), 0.01);
     EXPECT_GT(error.shadowed, 10U);
 }
@@ -169,7 +170,7 @@ TEST(ShadowTruth, CacheThatCannotBeWrittenIsTold) {
     }
 }
 
-// Exactly so many samples, and packets, are questions of their own.
+// Answers for an exact number of samples, and for packets, are kept apart from others.
 TEST(ShadowTruth, ExactSamplesAreAnotherQuestion) {
     Knot knot;
     const std::vector<glm::dvec3> points = {{0, 0, 0}};
@@ -181,7 +182,7 @@ TEST(ShadowTruth, ExactSamplesAreAnotherQuestion) {
     EXPECT_NE(hash({}), hash({.rays = ImageTracer::Rays::packets}));
 }
 
-// All of a light that its samples depend on, and nothing else.
+// Answers are found by all fields of a light that its samples depend on, and by no other field.
 TEST(ShadowTruth, OfALightWhatItsShapeUsesIsPartOfTheQuestion) {
     const Knot knot;
     const std::vector<glm::dvec3> points = {{0, 0, 0}};
@@ -209,7 +210,7 @@ TEST(ShadowTruth, OfALightWhatItsShapeUsesIsPartOfTheQuestion) {
     EXPECT_NE(hash(flat), rectangle);
 }
 
-// A hole in an alpha mask lets light through, so it is part of the question.
+// Answers depend on alpha masks, because a hole in a mask lets light through.
 TEST(ShadowTruth, MasksArePartOfTheQuestion) {
     Knot knot;
     const std::vector<glm::dvec3> points = {{0, 0, 0}};

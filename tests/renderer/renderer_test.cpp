@@ -23,8 +23,8 @@ using renderer::View;
 
 struct Difference {
     int largest = 0;
-    std::size_t pixels_over = 0;  ///< pixels with a channel that differs by more than the threshold
-    std::string first;            ///< where
+    std::size_t pixels_over = 0;  ///< pixels that differ in a channel by more than the threshold
+    std::string first;            ///< first such pixel
 };
 
 Difference compare(const optics::Image& a, const optics::Image& b, int threshold) {
@@ -52,7 +52,7 @@ Renderer make_renderer(const scenes::Scene& scene, const Settings& options) {
     return voxel_renderer(scene, scenes::take_snapshot(scene), options);
 }
 
-/// Every voxel at the finest level, whatever the distance.
+/// A view that shows every voxel at the finest level, whatever the distance.
 View finest_view(const scenes::Scene& scene, int width = 160, int height = 120) {
     View view;
     view.size.width = width;
@@ -143,7 +143,7 @@ TEST_F(RendererTest, ConvergedFrameProducesNothingAndRepeatsThePicture) {
 
 TEST_F(RendererTest, PictureDoesNotDependOnTheFramesBeforeIt) {
     const scenes::Scene scene = scenes::make_builtin("spheres");
-    // A pool that the second view fills anew.
+    // The second view fills the whole pool.
     const Settings options{.tree = {.max_resolution = 1024}, .pools = {.brick_bytes = 1U << 20U}};
     View near_view = finest_view(scene);
     near_view.detail.pixel_error = 1.0;

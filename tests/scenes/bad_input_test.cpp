@@ -25,7 +25,7 @@ using test::GltfFile;
 using test::Json;
 using test::ScratchFolder;
 
-/// What the error says, way out included; fails the test when there is none, or when it is slow or costs
+/// The text of the error, way out included. The test fails if there is no error, or if it takes long or much
 /// memory.
 std::string message_of(const std::string& path) {
     const auto peak_mib = [] {
@@ -69,7 +69,7 @@ TEST(BadInput, TheRichFileItselfIsGood) {
     EXPECT_EQ(take_snapshot(scene, {0.5, 0, std::nullopt}).triangle_count, 6U);
 }
 
-/// One change that spoils the rich file, and what the message must say.
+/// A change that breaks the rich file, and a text that the message must hold.
 struct Spoiled {
     const char* name;
     std::function<void(GltfFile&)> spoil;
@@ -264,7 +264,7 @@ const Spoiled bytes[] = {
 INSTANTIATE_TEST_SUITE_P(Bytes, BadInput, testing::ValuesIn(bytes),
                          [](const auto& test_info) { return test_info.param.name; });
 
-/// Puts other bytes into the place of the picture.
+/// Replaces the bytes of the picture.
 std::function<void(GltfFile&)> picture(const Bytes& file_bytes) {
     return [=](GltfFile& file) { file.json["images"][0]["bufferView"] = file.add_view(file_bytes); };
 }
@@ -311,7 +311,7 @@ TEST(BadInput, APictureThatUnpacksToMoreThanItsSizeIsRefused) {
     const Bytes length = {
         static_cast<std::uint8_t>(deflate.size() >> 24U), static_cast<std::uint8_t>(deflate.size() >> 16U),
         static_cast<std::uint8_t>(deflate.size() >> 8U), static_cast<std::uint8_t>(deflate.size())};
-    constexpr std::size_t idat = 33;  // behind the signature and IHDR
+    constexpr std::size_t idat = 33;  // after the signature and IHDR
     png.resize(idat);
     png.insert(png.end(), length.begin(), length.end());
     for (const char letter : {'I', 'D', 'A', 'T'})
@@ -367,7 +367,7 @@ TEST(BadInput, HugeJsonIsRefusedBeforeItIsParsed) {
     }
 }
 
-/// Every length of the container wrong in turn, and the file cut at every byte.
+/// Each length in the container is made wrong in turn, and the file is cut at every byte.
 TEST(BadInput, BrokenContainers) {
     const Bytes good = test::rich_gltf_file().glb();
     const std::size_t json_bytes = good[12] | good[13] << 8U;
@@ -422,7 +422,7 @@ TEST(BadInput, ABudgetGrowsWithTheInputAndNeverOverflows) {
     EXPECT_NO_THROW(budget.charge("here", 256, 1));
 }
 
-/// A few kilobytes that ask for 10^10 placed primitives.
+/// A few kilobytes that describe 10^10 placed primitives.
 TEST(BadInput, TooManyPlacedPrimitives) {
     GltfFile file = test::rich_gltf_file();
     const Json primitive = {{"attributes", {{"POSITION", 0}}}};

@@ -245,7 +245,7 @@ TEST(Builtin, UnknownNameIsAnErrorThatListsTheNames) {
     }
 }
 
-/// A scene with one of everything that write_glb() writes and no built-in scene has.
+/// A scene with everything that write_glb() writes and that no built-in scene has.
 Scene make_medley() {
     Scene scene = make_builtin("tree-leaves");
     scene.meshes[0].primitives.resize(1);

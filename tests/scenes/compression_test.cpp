@@ -1,4 +1,4 @@
-// Draco and meshopt, from streams made here.
+// Draco and meshopt, with streams that the tests encode.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -129,7 +129,7 @@ TEST(Draco, AnAbsurdCountInTheStreamIsRefusedBeforeItIsAllocated) {
     expect_refused(file, "more than a file of this size can mean");
 }
 
-/// Every byte of a stream broken in turn: an error or a mesh, nothing else.
+/// Each byte of a stream is broken in turn: that gives an error or a mesh, and nothing else.
 TEST(Draco, DamagedStreamsAreRefusedOrRead) {
     for (const auto method : {draco::MESH_SEQUENTIAL_ENCODING, draco::MESH_EDGEBREAKER_ENCODING}) {
         const GltfFile good = with_draco(method);

@@ -1,4 +1,4 @@
-// Animation, morph targets and skins, from files made here.
+// Animation, morph targets and skins, with files that the tests write.
 #include <cmath>
 #include <numbers>
 
@@ -93,7 +93,7 @@ TEST(Animation, RotationsTakeTheShortWay) {
     }
 }
 
-/// A node with a matrix keeps its other parts when an animation moves one of them.
+/// A node with a matrix keeps the rest of its transform if an animation moves a part of it.
 TEST(Animation, AMatrixIsTakenApart) {
     GltfFile file = point({1, 1, 0});
     file.json["nodes"][0]["matrix"] = {0, 2, 0, 0, 3, 0, 0, 0,
@@ -151,8 +151,8 @@ TEST(Morph, NegativeWeightsPullBackAndInstancesShareTheResult) {
     EXPECT_EQ(snapshot.items[0].positions.data(), snapshot.items[1].positions.data());
 }
 
-/// Three points hung on two joints: the first, the second, half and half. The mesh's node moves, and must not
-/// matter.
+/// Three points on two joints: on the first, on the second, and half on each. The mesh's node moves, which
+/// must not matter.
 GltfFile skinned(const std::vector<float>& weights) {
     GltfFile file = point({1, 0, 0, 1, 0, 0, 1, 0, 0});
     auto& attributes = file.json["meshes"][0]["primitives"][0]["attributes"];

@@ -1,4 +1,4 @@
-// Primitives, accessors and materials, from files made here.
+// Primitives, accessors and materials, with files that the tests write.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -198,7 +198,7 @@ TEST(Geometry, VertexColorsOfEveryTypeBecomeBytes) {
     EXPECT_EQ(scene.meshes[1].primitives[0].colors[0], glm::u8vec4(0, 128, 255, 255));
 }
 
-/// A textured square, its material open to changes.
+/// A textured square, whose material a test can change.
 GltfFile textured(const Json& texture_info) {
     GltfFile file;
     const int positions = file.add_accessor(square, "VEC3");
@@ -243,7 +243,7 @@ TEST(Materials, TextureTransformOverridesTheTexCoordSet) {
     const Scene scene =
         load_glb(textured({{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}}));
     EXPECT_FLOAT_EQ(first(scene).texcoords[1].x, 0.2F);  // of set 1
-    // Scaled to (2, 0), turned counter-clockwise where v points down to (0, -2), moved.
+    // Scaled to (2, 0); turned counter-clockwise, with v downwards, to (0, -2); moved.
     const glm::vec3 uv = scene.materials.at(0).uv_from_mesh * glm::vec3(1, 0, 1);
     EXPECT_NEAR(uv.x, 0.5F, 1e-6F);
     EXPECT_NEAR(uv.y, -1.75F, 1e-6F);

@@ -24,7 +24,7 @@ protected:
     /// A number below `bound`; the same stream on every standard library.
     std::uint32_t below(std::size_t bound) { return static_cast<std::uint32_t>(rng_() % bound); }
 
-    /// Loads a file, plays its animations. Everything but a cairn::Error fails the test.
+    /// Loads a file and plays its animations. The test fails if anything but a cairn::Error is thrown.
     void expect_survived(const Bytes& file, int round) {
         std::filesystem::remove(path_);  // some file systems wait for the disk when a file is written over
         test::write_bytes(path_, file.data(), file.size());

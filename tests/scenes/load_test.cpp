@@ -1,4 +1,4 @@
-// Files, nodes, scenes and extensions, from files made here.
+// Files, nodes, scenes and extensions, with files that the tests write.
 #include "scenes/load.h"
 
 #include <cmath>

@@ -23,8 +23,8 @@ const std::filesystem::path data = CAIRN_SCENE_DATA;
 /// A row of the manifest's table of glTF files.
 struct Row {
     std::string file;
-    std::uint64_t triangles = 0;        ///< of the meshes, each once
-    std::uint64_t scene_triangles = 0;  ///< of the default scene, instances counted
+    std::uint64_t triangles = 0;        ///< triangles of the meshes, each once
+    std::uint64_t scene_triangles = 0;  ///< triangles of the default scene, with instances
     std::size_t nodes = 0;
 };
 
@@ -58,7 +58,7 @@ std::uint64_t mesh_triangles(const Scene& scene) {
     return count;
 }
 
-/// What the Scene holds, not what it stands for.
+/// Counts what the Scene holds, each mesh once.
 std::size_t geometry_bytes(const Scene& scene) {
     std::size_t bytes = 0;
     for (const Mesh& mesh : scene.meshes)
@@ -102,7 +102,7 @@ TEST(Data, EveryFileIsInTheManifest) {
     }
 }
 
-/// Every animation of every file at several moments: no vertex flies off, and the counts stay.
+/// Plays every animation of every file: no vertex flies off, and the counts stay the same.
 TEST(Data, EveryAnimationCanBePlayed) {
     for (const Row& row : manifest()) {
         const Scene scene = load((data / row.file).string());
@@ -212,7 +212,8 @@ std::vector<Triangle> triangle_set(const Primitive& primitive, NameOf name_of) {
     return set;
 }
 
-/// Draco reorders vertices and triangles; each corner is known by the plain bunny's vertex that it lies on.
+/// Draco reorders vertices and triangles, so each corner is identified by the plain bunny's vertex at its
+/// place.
 TEST(Data, TheDracoBunnyIsThePlainBunny) {
     const Scene plain = load((data / "gltf/stanford_bunny_69k.glb").string());
     const Scene packed = load((data / "gltf/stanford_bunny_69k_draco.glb").string());

@@ -1,4 +1,4 @@
-// Readers of volume files: what they read, and what they refuse.
+// Readers of volume files: files that they read, and files that they refuse.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ std::string bytes_of(T value, bool big = false) {
     return bytes;
 }
 
-/// With another file for the samples.
+/// A header with its samples in another file.
 std::string elsewhere(const std::string& header, const std::string& file) {
     return fmt::format("{}{}\n", header.substr(0, header.find("LOCAL")), file);
 }
@@ -51,7 +51,7 @@ std::string metaimage(const std::string& size, const std::string& type, const st
         more, type, data);
 }
 
-/// A header of NIfTI-1 with what a test changes in it.
+/// A header of NIfTI-1 with a test's changes.
 struct Nifti {
     bool big = false;
     std::string bytes = std::string(352, '\0');
@@ -102,7 +102,7 @@ private:
     ScratchFolder folder_;
 };
 
-/// x, y and z of the file become x, -z... of the world: where in the volume a sample of the file is.
+/// The place in the volume of a sample of the file: axes of the file become x, -z... of the world.
 std::uint16_t sample(const Volume& v, int x, int y, int z) {
     return v.samples[std::size_t(x + v.size.x * (y + v.size.y * z))];
 }

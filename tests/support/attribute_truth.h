@@ -9,13 +9,13 @@
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/grid.h"
 
-/// Mean colours and normals by clipping polygons in double, cell by cell of the texture: an integral, no
-/// samples.
+/// Mean colours and normals of voxels: an integral, computed without samples by clipping polygons in double,
+/// cell by cell of the texture.
 namespace cairn::test {
 
-/// A point of a triangle: all that varies on it, each linear.
+/// A point of a triangle, with everything that varies linearly over the triangle.
 struct TruthVertex {
-    glm::dvec3 position{0.0};  ///< voxels
+    glm::dvec3 position{0.0};  ///< in voxels
     glm::dvec3 normal{0.0};
     glm::dvec3 color{1.0};
     glm::dvec2 texcoord{0.0};
@@ -24,13 +24,13 @@ using TruthPolygon = std::vector<TruthVertex>;
 
 struct TruthTriangle {
     TruthPolygon corners;
-    const scenes::Image* image = nullptr;  ///< repeats
+    const scenes::Image* image = nullptr;  ///< texture, which repeats
     glm::dvec3 factor{1.0};
     bool masked = false;  ///< texels of alpha < 128 are holes
 };
 
 struct TruthVoxel {
-    double area = 0.0;  ///< voxel faces
+    double area = 0.0;  ///< area in faces of a voxel
     glm::dvec3 color{0.0}, normal{0.0};
 };
 
@@ -39,7 +39,7 @@ inline TruthVertex between(const TruthVertex& p, const TruthVertex& q, double t)
             glm::mix(p.color, q.color, t), glm::mix(p.texcoord, q.texcoord, t)};
 }
 
-/// What lies where `inside(vertex)` >= 0.
+/// The part of a polygon where `inside(vertex)` >= 0.
 template <typename Inside>
 TruthPolygon clipped(const TruthPolygon& polygon, const Inside& inside) {
     TruthPolygon out;
@@ -108,7 +108,7 @@ inline void add_triangle(TruthVoxel& voxel, const TruthTriangle& triangle, const
     }
 }
 
-/// One of each occupied voxel of the region, in the order of VoxelAttributes.
+/// The attributes of the occupied voxels of the region, in the order of VoxelAttributes.
 inline std::vector<TruthVoxel> true_attributes(const std::vector<TruthTriangle>& triangles,
                                                const voxelizer::BitGrid& bits,
                                                const glm::ivec3& region_origin) {

@@ -8,15 +8,18 @@
 #include "renderer/produce/content.h"
 #include "renderer/renderer.h"
 
-/// Content of few words, for what no surface has: a solid box of thin fog, all of one colour, over a white
+/// Simple content for what surfaces do not have: a solid box of thin fog, all of one colour, over a white
 /// floor. Both end on the planes of the coarsest voxels, so that all levels show the same shape.
 namespace cairn::test {
 
 struct BoxOptions {
     int n = 4;
-    int margin = 1;        ///< the box spans [margin / n, 1 - margin / n] of the root cube along each axis
-    bool constant = true;  ///< tells of tiles whose voxels are all alike, border included
-    bool low_frequency = false;  ///< calls tiles of level 1 and more in the low half along x final
+    /// The box spans [margin / n, 1 - margin / n] of the root cube along each axis.
+    int margin = 1;
+    /// Whether tiles are reported whose voxels are all alike, border included.
+    bool constant = true;
+    /// Whether tiles of level 1 and more in the low half along x are final.
+    bool low_frequency = false;
 };
 
 class BoxContent final : public renderer::Content, public renderer::Oracle, public renderer::Producer {
@@ -37,7 +40,7 @@ public:
     std::vector<renderer::Produced> produce(std::span<const renderer::BrickRequest> requests,
                                             const renderer::BrickPool& pool) override;
 
-    /// All that was ever produced, in order.
+    /// All tiles that were ever produced, in order.
     [[nodiscard]] const std::vector<renderer::Tile>& produced() const { return produced_; }
 
     /// Texels of the box and of the floor: square roots of the colour times the coverage, and the coverage.
@@ -45,7 +48,7 @@ public:
     static constexpr glm::u8vec4 floor{255, 255, 255, 255};
 
 private:
-    /// What voxel v of a level holds, by its centre; outside the root cube nothing.
+    /// The content of voxel v of a level, by its centre; outside the root cube there is nothing.
     [[nodiscard]] glm::u8vec4 texel(const glm::i64vec3& v, int level) const;
     void write(const renderer::BrickPool& pool, int slot, const std::vector<glm::u8vec4>& texels) const;
 

@@ -10,20 +10,19 @@
 
 namespace cairn::test {
 
-/// A triangle, clipped by half spaces: the exact predicates' own witness, which shares nothing with
-/// separating axes.
+/// A triangle, clipped by half spaces: a second exact predicate, which shares nothing with separating axes.
 ///
 /// A half space is a quantity that is linear over the triangle, and a bound for it (Sutherland and Hodgman
 /// 1974). The triangle is clipped in its own barycentric weights, all homogeneous: there it is a proper
-/// triangle even when it is a segment or a point in space, the end of each half space is a line with whole
-/// coefficients, and every corner is the crossing of two lines, so that numbers grow no longer with each cut.
+/// triangle even if it is a segment or a point in space, the border of each half space is a line with whole
+/// coefficients, and every corner is the crossing of two lines, so that numbers do not grow with each cut.
 ///
-/// When values and bounds are within +-2^40, coefficients are at most 2^41, corners 2^83, and distances under
+/// If values and bounds are within +-2^40, coefficients are at most 2^41, corners 2^83, and distances under
 /// 2^125.6: 128 bits are enough. `Number` may be wider.
 template <class Number>
 class ClippedTriangle {
 public:
-    /// A quantity at the three corners.
+    /// A quantity, by its values at the three corners.
     using Values = std::array<std::int64_t, 3>;
 
     ClippedTriangle() {
@@ -47,7 +46,7 @@ public:
 
 private:
     using Triple = std::array<Number, 3>;
-    static constexpr std::size_t most_corners = 16;  // three, and one more a cut
+    static constexpr std::size_t most_corners = 16;  // three, and one more per cut
     using Triples = std::array<Triple, most_corners>;
 
     void add(const Triple& corner, const Triple& line) {
@@ -60,7 +59,7 @@ private:
         return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     }
 
-    /// Of two lines that cross within the triangle: weights are positive there.
+    /// The crossing of two lines within the triangle, where weights are positive.
     [[nodiscard]] static Triple crossing(const Triple& a, const Triple& b) {
         Triple out = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
         if (out[0] + out[1] + out[2] < 0) {
@@ -93,8 +92,8 @@ private:
         }
     }
 
-    Triples corners_;  ///< in order
-    Triples lines_;    ///< that each corner follows to the next
+    Triples corners_;  ///< corners in order
+    Triples lines_;    ///< line from each corner to the next
     std::size_t count_ = 0;
 };
 

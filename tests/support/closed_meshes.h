@@ -8,7 +8,7 @@
 
 #include "tests/support/lattice_surface.h"
 
-/// Closed meshes on the lattice, and what is inside them.
+/// Closed meshes on the lattice, and whether a point is inside them.
 namespace cairn::test {
 
 using Mesh = std::vector<LatticeTriangle>;
@@ -26,7 +26,8 @@ inline Mesh joined(Mesh a, const Mesh& b) {
     return a;
 }
 
-/// Twelve triangles, normals outwards; each face cut along either diagonal, each triangle from any corner.
+/// A box of twelve triangles with normals outwards. Each face is cut along either diagonal, and each triangle
+/// begins at any corner.
 inline Mesh box(const glm::i64vec3& low, const glm::i64vec3& high, Random& random) {
     Mesh mesh;
     for (int axis = 0; axis < 3; ++axis) {
@@ -52,7 +53,7 @@ inline Mesh box(const glm::i64vec3& low, const glm::i64vec3& high, Random& rando
     return mesh;
 }
 
-/// An octahedron, its sides halved `depth` times and moved onto the sphere.
+/// A sphere: an octahedron whose sides are halved `depth` times and moved onto the sphere.
 inline Mesh sphere(const glm::dvec3& centre, double radius, int depth) {
     std::vector<std::array<glm::dvec3, 3>> faces;
     for (int octant = 0; octant < 8; ++octant) {
@@ -83,7 +84,8 @@ inline Mesh sphere(const glm::dvec3& centre, double radius, int depth) {
     return mesh;
 }
 
-/// Tetrahedra of either orientation, across each other, many with corners on the lines through the centres.
+/// Tetrahedra of either orientation that intersect each other, many with corners on the lines through the
+/// voxels' centres.
 inline Mesh random_tetrahedra(Random& random, int count, std::int64_t step) {
     Mesh mesh;
     for (int i = 0; i < count; ++i) {
@@ -101,7 +103,7 @@ inline Mesh random_tetrahedra(Random& random, int count, std::int64_t step) {
 }
 
 /// How often a mesh winds around a point, by the solid angles of its triangles (van Oosterom and Strackee
-/// 1983). Not near the surface.
+/// 1983). Not for points near the surface.
 inline double winding_number(const Mesh& mesh, const glm::dvec3& point) {
     double sum = 0.0;
     for (const LatticeTriangle& t : mesh) {

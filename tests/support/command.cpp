@@ -12,7 +12,7 @@
 namespace cairn::test {
 namespace {
 
-/// For the shell: everything but the quote itself is literal between single quotes.
+/// A word for the shell: between single quotes, everything but the quote itself is literal.
 std::string quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text) {

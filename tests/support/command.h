@@ -9,27 +9,27 @@
 
 namespace cairn::test {
 
-/// What a run of the command left behind.
+/// Exit code and output of a run of the command.
 struct Answer {
-    int code = -1;  ///< exit code; -1: it was killed
+    int code = -1;  ///< exit code; -1 if it was killed
     std::string out;
     std::string err;
 
-    /// The JSON on stdout; a failure of the test, and null, when it is none.
+    /// The JSON on stdout. If stdout is not JSON, the test fails and the result is null.
     [[nodiscard]] nlohmann::json json() const;
 };
 
 std::ostream& operator<<(std::ostream& out, const Answer& answer);
 
 struct Surroundings {
-    std::filesystem::path folder = {};                    ///< working folder; empty: the test's own
-    std::map<std::string, std::string> environment = {};  ///< added to the test's own
+    std::filesystem::path folder = {};                    ///< working folder; empty: that of the test
+    std::map<std::string, std::string> environment = {};  ///< variables added to those of the test
 };
 
 /// Runs `cairn ARGUMENTS...` to its end. OpenGL errors end it (CAIRN_GL_DEBUG).
 [[nodiscard]] Answer cairn(const std::vector<std::string>& arguments, const Surroundings& surroundings = {});
 
-/// The same with `--json -`; expects it to succeed.
+/// Runs `cairn ARGUMENTS... --json -` and returns the JSON. The test fails if the command does.
 [[nodiscard]] nlohmann::json cairn_json(std::vector<std::string> arguments,
                                         const Surroundings& surroundings = {});
 

@@ -1,4 +1,4 @@
-// In a file of its own, so that no compiler sees through a replaced operator.
+// The operator is replaced in a file of its own, so that compilers do not inline it.
 #include "tests/support/count_news.h"
 
 #include <cstdlib>

@@ -4,8 +4,8 @@
 
 namespace cairn::test {
 
-/// How often this thread has taken memory with `new`, drivers and libraries included. A test program that
-/// links count_news.cpp counts.
+/// Number of calls of `new` in this thread, by drivers and libraries too. Counts in programs that link
+/// count_news.cpp.
 [[nodiscard]] std::size_t news();
 
 }  // namespace cairn::test

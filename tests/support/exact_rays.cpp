@@ -11,7 +11,7 @@ namespace {
 
 using glm::i64vec3;
 
-/// A time: num / den, den > 0.
+/// A time num / den, with den > 0.
 struct Fraction {
     Wide num = 0;
     std::int64_t den = 1;
@@ -35,7 +35,7 @@ public:
 private:
     [[nodiscard]] const Space& space() const { return spaces_[std::size_t(at_.space)]; }
     [[nodiscard]] int unit_shift() const { return space().voxel_shift + ray_.fraction_bits; }
-    /// When the ray meets the plane before voxel `voxel` of an axis.
+    /// The time at which the ray meets the plane before voxel `voxel` of an axis.
     [[nodiscard]] Fraction time_of(int axis, std::int64_t voxel) const {
         const Wide way = (Wide(voxel) << unit_shift()) - ray_.origin[axis];
         const std::int64_t d = ray_.direction[axis];
@@ -58,7 +58,8 @@ private:
     Crossed at_;
 };
 
-/// The first space's voxel at the origin, or where the ray comes to the only space from outside.
+/// The voxel where the ray starts: that of the first space at the origin or, if the ray comes from outside
+/// the only space, the first voxel that it meets.
 bool Walk::enter() {
     Fraction first{0, 1};
     int entered = -1;
@@ -91,7 +92,7 @@ bool Walk::enter() {
     return true;
 }
 
-/// -1 when the voxel is occupied, else log2 of the side of an empty aligned cell around it.
+/// -1 if the voxel is occupied, else log2 of the side of an empty aligned cell around it.
 int Walk::empty_shift() const {
     if (renderer::fractal::occupied(at_.voxel, space().bits)) return -1;
     const i64vec3& v = at_.voxel;
@@ -101,7 +102,7 @@ int Walk::empty_shift() const {
     return std::min(int(std::bit_width(common)) - 1, space().step_shift);
 }
 
-/// False when the ray has left the last space.
+/// False if the ray has left the last space.
 bool Walk::step_over(int shift) {
     const i64vec3 low = at_.voxel >> std::int64_t(shift) << std::int64_t(shift);
     const i64vec3 end = low + (std::int64_t(1) << shift);

@@ -17,17 +17,18 @@ struct WideVector {
     Wide operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
 };
 
-/// A cube of voxels that rays march; the next one holds it.
+/// A cube of voxels that rays march. The next cube contains it.
 struct Space {
-    glm::i64vec3 low{0};  ///< its first voxel, in voxels of its own from the root cube's low corner
+    glm::i64vec3 low{0};  ///< first voxel, in this space's voxels from the root cube's low corner
     std::int64_t side = 0;
-    int voxel_shift = 0;  ///< log2 of a voxel's side, in those of the first space
-    int bits = 0;         ///< log2 of its voxels across the root cube
-    int step_shift = 0;   ///< log2 of the largest cell to step over
+    int voxel_shift = 0;  ///< log2 of a voxel's side, in voxels of the first space
+    int bits = 0;         ///< log2 of the number of voxels across the root cube
+    int step_shift = 0;   ///< log2 of the side of the largest cell to step over
 };
 
 struct ExactRay {
-    WideVector origin;  ///< in 2^-fraction_bits voxels of the first space, from the root cube's low corner
+    /// In 2^-fraction_bits voxels of the first space, from the root cube's low corner.
+    WideVector origin;
     glm::i64vec3 direction{0};
     int fraction_bits = 0;
 };
@@ -38,13 +39,13 @@ struct Crossed {
     glm::i64vec3 voxel{0};
 };
 
-/// Visits the occupied voxels along the ray, nearest first, until `visit` returns true. Each space takes up
-/// where the one before ends. Where a ray meets an edge or a corner it crosses x, then y, then z.
+/// Visits the occupied voxels along the ray, nearest first, until `visit` returns true. Each space
+/// begins where the one before ends. A ray that meets an edge or a corner crosses x, then y, then z.
 void cross_occupied(const std::vector<Space>& spaces, const ExactRay& ray,
                     const std::function<bool(const Crossed&)>& visit);
 
-/// The part of the ray, as [first, last] of its parameter, in the voxel grown by `margin` (negative: shrunk)
-/// of its sides. In long double, relative to the origin. Empty when first > last.
+/// The part of the ray, as [first, last] of its parameter, in the voxel grown by `margin` of its sides
+/// (shrunk if negative). In long double, relative to the origin. Empty if first > last.
 struct Interval {
     long double first = 0.0L, last = -1.0L;
     [[nodiscard]] bool empty() const { return !(first <= last); }

@@ -5,13 +5,13 @@
 
 namespace cairn::test {
 
-/// How long a fuzz goes on: a second or two, unless the environment asks for more.
+/// Seed and number of trials of a fuzz test: for a second or two, unless the environment asks for more.
 struct Fuzz {
     std::uint32_t seed;
     std::int64_t trials;
 };
 
-/// CAIRN_FUZZ_SEED and CAIRN_FUZZ_TRIALS, where they are set.
+/// The values of CAIRN_FUZZ_SEED and CAIRN_FUZZ_TRIALS if they are set, else the defaults.
 inline Fuzz fuzz_of(std::uint32_t seed, std::int64_t trials) {
     const char* const other_seed = std::getenv("CAIRN_FUZZ_SEED");
     const char* const other_trials = std::getenv("CAIRN_FUZZ_TRIALS");

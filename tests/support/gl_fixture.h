@@ -9,8 +9,8 @@
 
 namespace cairn::test {
 
-/// A test with an OpenGL context of its own and KHR_debug on. It fails when OpenGL reported an error or
-/// undefined behaviour that the test did not take out of the log itself.
+/// A test with an OpenGL context of its own and KHR_debug on. It fails if OpenGL has reported an error or
+/// undefined behaviour that the test has not taken out of the log.
 class GlTest : public ::testing::Test {
 protected:
     void SetUp() override {

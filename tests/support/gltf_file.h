@@ -41,7 +41,7 @@ inline void write_bytes(const std::filesystem::path& path, const void* data, std
         .write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
 }
 
-/// A glTF file under construction. `json` is open to any change, good or bad.
+/// A glTF file under construction. Tests may change `json` as they like, to valid or invalid JSON.
 struct GltfFile {
     Json json = {{"asset", {{"version", "2.0"}}}};
     Bytes binary;
@@ -71,7 +71,7 @@ struct GltfFile {
         return add("accessors", accessor);
     }
 
-    /// A mesh of one primitive, and a node of the only scene that shows it. Returns the node.
+    /// Adds a mesh of one primitive and a node of the only scene that shows it. Returns the node's index.
     int add_mesh(const Json& primitive) {
         const int mesh = add("meshes", {{"primitives", Json::array({primitive})}});
         return add_root({{"mesh", mesh}});
@@ -93,7 +93,7 @@ struct GltfFile {
         return result;
     }
 
-    /// As .gltf, with its bytes in a .bin beside it.
+    /// Writes a .gltf file, with its bytes in a .bin file beside it.
     void write_gltf(const std::filesystem::path& path) const {
         const std::string text = with_buffer(path.stem().string() + ".bin").dump();
         write_bytes(path, text.data(), text.size());
@@ -133,8 +133,8 @@ struct GltfFile {
     }
 };
 
-/// A PNG whose data is stored, not compressed: `bits` 8 or 16, RGBA, all texels alike, or with raw bytes of
-/// your own.
+/// An RGBA PNG whose data is stored and not compressed, with `bits` 8 or 16. Its texels are all alike, or the
+/// raw bytes are given.
 class PngWriter {
 public:
     static Bytes make(std::uint32_t width, std::uint32_t height, int bits, const Bytes& rows) {

@@ -23,7 +23,7 @@ using LatticeTriangle = std::array<glm::i64vec3, 3>;
 
 constexpr std::int64_t lattice_side = std::int64_t(1) << LATTICE_BITS;
 
-/// A cube of `resolution` voxels with its low corner at the world's origin, a voxel a unit.
+/// A cube of `resolution` voxels with its low corner at the world's origin, one unit per voxel.
 inline voxelizer::Grid unit_grid(int resolution) {
     return {glm::dvec3(0.0), 1.0, glm::ivec3(resolution)};
 }
@@ -33,7 +33,7 @@ inline bool within_shader_range(const glm::i64vec3& p) {
            glm::all(glm::lessThanEqual(p, glm::i64vec3(2 * lattice_side)));
 }
 
-/// A surface of just these triangles, as build_surface would leave them.
+/// A surface of these triangles, as build_surface() would make it.
 inline voxelizer::Surface lattice_surface(const std::vector<LatticeTriangle>& triangles, int resolution) {
     voxelizer::Surface surface;
     surface.grid = unit_grid(resolution);
@@ -54,7 +54,7 @@ inline voxelizer::Surface lattice_surface(const std::vector<LatticeTriangle>& tr
     return surface;
 }
 
-/// The truth at its plainest: every voxel against one triangle.
+/// The truth in its simplest form: every voxel is tested against one triangle.
 inline voxelizer::BitGrid voxels_of(const LatticeTriangle& triangle, const voxelizer::Region& region) {
     voxelizer::BitGrid bits(region.size);
     const std::int64_t side = region.voxel_side();
@@ -76,7 +76,7 @@ inline std::string to_string(const LatticeTriangle& t) {
     return out;
 }
 
-/// Passes when the bits are the same; else tells how many differ and where the first ones are.
+/// Passes if the bits are the same; else reports how many differ and where the first ones are.
 inline ::testing::AssertionResult same_bits(const voxelizer::BitGrid& ours, const voxelizer::BitGrid& truth) {
     if (ours == truth) return ::testing::AssertionSuccess();
     if (ours.size != truth.size) return ::testing::AssertionFailure() << "sizes differ";
@@ -90,7 +90,7 @@ inline ::testing::AssertionResult same_bits(const voxelizer::BitGrid& ours, cons
     return failure;
 }
 
-/// The same stream of numbers with every standard library.
+/// Random numbers: the same stream with every standard library.
 class Random {
 public:
     explicit Random(std::uint32_t seed) : bits_(seed) {}

@@ -45,7 +45,7 @@ double coverage_of(const Gathered& g) {
     return std::round(most / 16.0 * 255.0) / 255.0;  // R8
 }
 
-/// By the octahedral map, in whole steps.
+/// A normal rounded to whole steps of the octahedral map.
 dvec3 rounded_normal(const dvec3& n, double steps) {
     const glm::dvec2 flat = glm::dvec2(n) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
     const auto folded = [](const glm::dvec2& e) {
@@ -57,8 +57,8 @@ dvec3 rounded_normal(const dvec3& n, double steps) {
     return glm::normalize(dvec3(z < 0.0 ? folded(e) : e, z));
 }
 
-/// The direction in which normals spread most: by power iteration as the shader does it, since where several
-/// are as good its choice is the definition.
+/// The direction in which normals spread most, by the same power iteration as in the shader: if several
+/// directions are equally good, its choice is the definition.
 dvec3 main_direction(const glm::dmat3& covariance) {
     int most = 0;
     for (int axis = 1; axis < 3; ++axis)
@@ -69,7 +69,7 @@ dvec3 main_direction(const glm::dmat3& covariance) {
     return u / std::max(glm::length(u), 1e-12);
 }
 
-/// Two that have the mean of all and lie where they spread most.
+/// Two normals that have the mean of all and lie in the direction in which they spread most.
 TwoNormals two_normals(const Gathered& g) {
     if (glm::length(g.normal) + glm::length(g.moments[0]) + glm::length(g.moments[1]) == 0.0) return {};
     const dvec3 mean = g.normal / g.weight;
@@ -131,7 +131,7 @@ struct Hit {
 };
 
 /// Calls visit(voxel, t_in, t_out) for each voxel that the ray crosses, nearest first, until it returns
-/// false. Positions in voxels.
+/// false. Positions are in voxels.
 void cross_voxels(int side, const dvec3& origin, const dvec3& direction, double t_end,
                   const std::function<bool(const ivec3&, double, double)>& visit) {
     double t_near = 0.0;
@@ -171,8 +171,8 @@ double behind(double transmittance, double coverage) {
     return std::max(transmittance - std::min(2.0 * coverage, 1.0), 0.0);
 }
 
-/// What a ray sees of the surface at a point, from the four voxel centres of the tetrahedron around it;
-/// outside the root cube there is nothing.
+/// The surface that a ray sees at a point, interpolated between the four voxel centres of the tetrahedron
+/// around it. Outside the root cube there is nothing.
 dvec3 visible_normal(const DenseVoxels& voxels, const ivec3& own, const dvec3& point,
                      const dvec3& direction) {
     const dvec3 p = point - 0.5;

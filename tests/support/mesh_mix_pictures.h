@@ -14,7 +14,7 @@
 #include "tests/support/voxel_renderer.h"
 #include "voxelizer/grid.h"
 
-/// Pictures of meshes beside voxels, and how they are compared.
+/// Pictures of meshes beside voxels, and their comparison.
 namespace cairn::test {
 
 using optics::Image;
@@ -32,7 +32,7 @@ inline Renderer voxels_of(const scenes::Scene& scene, int resolution) {
     return voxel_renderer(scene, scenes::take_snapshot(scene), {.tree = {.max_resolution = resolution}});
 }
 
-/// Lit from everywhere, with the finest voxels: what a pixel shows is told by its colour.
+/// A view lit from everywhere, with the finest voxels: a pixel's colour is that of the thing it shows.
 inline View flat_view(const glm::dvec3& eye, const glm::dvec3& target, int width = 155, int height = 115) {
     View view;
     view.size.width = width;
@@ -50,7 +50,7 @@ inline glm::ivec4 at(const optics::Image& image, int x, int y) {
     return {image.rgba[i], image.rgba[i + 1], image.rgba[i + 2], image.rgba[i + 3]};
 }
 
-/// Pixels that differ by more than `threshold` in any channel, or in colour alone.
+/// Number of pixels that differ by more than `threshold` in any channel, or in colour alone.
 inline int others(const optics::Image& a, const optics::Image& b, int threshold, bool alpha = true) {
     EXPECT_EQ(a.rgba.size(), b.rgba.size());
     int count = 0;

@@ -13,7 +13,7 @@
 #include "scenes/transform.h"
 #include "tests/support/test_scenes.h"
 
-/// Rays against triangles, one by one, in double: what rasterized meshes are judged by.
+/// Rays against triangles, one by one, in double: the truth for rasterized meshes.
 namespace cairn::test {
 
 struct WorldTriangle {
@@ -34,7 +34,7 @@ inline std::vector<WorldTriangle> world_triangles(const scenes::Snapshot& snapsh
     return all;
 }
 
-/// Through places of a picture: (0.5, 0.5) is the centre of the pixel at the top left.
+/// Rays through places of a picture: (0.5, 0.5) is the centre of the pixel at the top left.
 class PictureRays {
 public:
     explicit PictureRays(const renderer::View& view)
@@ -60,7 +60,7 @@ private:
 struct Face {
     double t = 0.0;
     std::size_t triangle = 0;
-    double cosine = 0.0;  ///< of the ray with the normal; negative: a front
+    double cosine = 0.0;  ///< between ray and normal; negative if the front is seen
 };
 
 /// All faces before the origin, nearest first.
@@ -85,8 +85,8 @@ inline std::vector<Face> faces_along(const std::vector<WorldTriangle>& triangles
     return faces;
 }
 
-/// The faces at a pixel's centre, unless another triangle comes in so near to it that rasterizers, which
-/// round vertices to a 256th of a pixel, may see that one.
+/// The faces at a pixel's centre; none if another triangle is so close that a rasterizer, which rounds
+/// vertices to a 256th of a pixel, may see that triangle.
 struct PixelFaces {
     std::vector<Face> faces;
     bool sure = true;
@@ -109,7 +109,7 @@ inline PixelFaces faces_at(const std::vector<WorldTriangle>& triangles, const Pi
     return out;
 }
 
-/// A box, fronts outwards.
+/// A box with its fronts outwards.
 inline std::vector<glm::vec3> box_corners(const glm::vec3& low, const glm::vec3& high) {
     std::vector<glm::vec3> corners;
     for (int axis = 0; axis < 3; ++axis) {
@@ -135,7 +135,7 @@ inline std::vector<glm::vec3> box_corners(const glm::vec3& low, const glm::vec3&
     return corners;
 }
 
-/// In one colour (linear).
+/// A scene of triangles in one linear colour.
 inline scenes::Scene colored(std::vector<glm::vec3> corners, const glm::vec4& color) {
     scenes::Scene scene = triangles(std::move(corners));
     scenes::Material material;
@@ -145,7 +145,7 @@ inline scenes::Scene colored(std::vector<glm::vec3> corners, const glm::vec4& co
     return scene;
 }
 
-/// Four corners, counter-clockwise seen from the front.
+/// A quad from four corners, counter-clockwise as seen from the front.
 inline std::vector<glm::vec3> quad(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
                                    const glm::vec3& d) {
     return {a, b, c, a, c, d};

@@ -25,7 +25,7 @@ inline scenes::When moment(double seconds, int animation) {
     return {seconds, animation, std::nullopt};
 }
 
-/// The greatest difference of two packed normals in steps of their coordinates.
+/// The greatest difference of two packed normals, in steps of their coordinates.
 inline int steps_between(std::uint32_t a, std::uint32_t b) {
     const auto part = [](std::uint32_t packed, int shift) {
         return int(std::int16_t(std::uint16_t(packed >> shift)));
@@ -38,7 +38,7 @@ std::vector<T> all_of(const gl::Buffer& buffer, std::size_t count) {
     return buffer.read_all<T>(count);
 }
 
-/// Passes when the vertices are those of the snapshot's surface, bit for bit, and the normals to a step.
+/// Passes if the vertices are those of the snapshot's surface, bit for bit, and the normals up to one step.
 inline ::testing::AssertionResult same_vertices(const voxelizer::GpuSurface& ours,
                                                 const voxelizer::Surface& truth) {
     if (ours.chunks.size() != truth.chunks.size()) return ::testing::AssertionFailure() << "chunks differ";
@@ -89,7 +89,7 @@ protected:
                 voxelizer::build_surface(scene, snapshot, grid, {.attributes = true});
             const voxelizer::GpuSurface& ours = moving.move_to(seconds);
             EXPECT_FALSE(moving.was_on_cpu()) << where;
-            // Where every triangle reaches the cube, as here at most moments, the two lists are the same.
+            // If every triangle reaches the cube, as here at most moments, the two lists are the same.
             if (truth.triangle_count == moving.triangle_count()) {
                 EXPECT_TRUE(same_vertices(ours, truth)) << where;
                 ++vertices_compared_;

@@ -76,7 +76,7 @@ int add_mesh(Scene& scene, Primitive primitive) {
     return int(scene.meshes.size()) - 1;
 }
 
-/// A child of `parent`, or a root.
+/// Adds a child of `parent`, or a root.
 int add_node(Scene& scene, int parent, const Trs& trs, int mesh = -1, int skin = -1) {
     const int index = int(scene.nodes.size());
     Node& node = scene.nodes.emplace_back();

@@ -11,27 +11,31 @@
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/surface/surface.h"
 
-/// Reads bricks back as the marcher sees them.
+/// Bricks, read back as the marcher sees them.
 namespace cairn::test {
 
-/// One slot of the pool. Places run from -1 to M, the border included.
+/// The content of one slot of the pool. Places run from -1 to M, the border included.
 struct ProducedBrick {
     int m = 0;
-    std::vector<std::uint32_t> color;   ///< RGBA8; of a pool without colour the coverage alone
-    std::vector<std::uint32_t> normal;  ///< as shaders/pool/brick_normals.glsl packs them
-    std::vector<std::uint64_t> masks;   ///< the summary, then the blocks
+    /// RGBA8; coverage alone if the pool has no colour.
+    std::vector<std::uint32_t> color;
+    /// Normals as shaders/pool/brick_normals.glsl packs them.
+    std::vector<std::uint32_t> normal;
+    /// The summary of the masks, then their blocks.
+    std::vector<std::uint64_t> masks;
 
     [[nodiscard]] std::size_t index(const glm::ivec3& place) const {
         const glm::ivec3 p = place + 1;
         return std::size_t(p.x + (m + 2) * (p.y + (m + 2) * p.z));
     }
-    /// Red, green, blue (square roots, times the coverage) and coverage, 0 to 255.
+    /// Red, green and blue (square roots, times the coverage), and the coverage: 0 to 255.
     [[nodiscard]] glm::ivec4 color_at(const glm::ivec3& place) const;
-    /// The first of the voxel's two normals; 0: there is none.
+    /// The first of the voxel's two normals; 0 if it has none.
     [[nodiscard]] glm::vec3 normal_at(const glm::ivec3& place) const;
     [[nodiscard]] glm::vec3 second_normal_at(const glm::ivec3& place) const;
     [[nodiscard]] float second_share_at(const glm::ivec3& place) const;
-    [[nodiscard]] bool occupied(const glm::ivec3& place) const;  ///< by the masks; not in the border
+    /// Whether the masks mark the voxel. Not for the border.
+    [[nodiscard]] bool occupied(const glm::ivec3& place) const;
     [[nodiscard]] bool summary_at(const glm::ivec3& block) const;
     [[nodiscard]] bool operator==(const ProducedBrick&) const = default;
 };
@@ -39,7 +43,7 @@ struct ProducedBrick {
 [[nodiscard]] ProducedBrick read_brick(const renderer::BrickPool& pool, const renderer::TreeShape& shape,
                                        int slot);
 
-/// What of the driver's memory the pool's stores take.
+/// Bytes of the driver's memory that the pool's stores take.
 struct PoolTextures {
     glm::ivec3 color_size{0};
     glm::ivec3 normal_size{0};
@@ -47,16 +51,16 @@ struct PoolTextures {
 };
 [[nodiscard]] PoolTextures textures_of(const renderer::BrickPool& pool);
 
-/// Occupancy by the masks, and by the coverage: border included, so one voxel larger on every side.
+/// Occupancy by the masks; and by the coverage, border included, so one voxel larger on every side.
 [[nodiscard]] voxelizer::BitGrid mask_bits(const ProducedBrick& brick);
 [[nodiscard]] voxelizer::BitGrid coverage_bits(const ProducedBrick& brick);
 
-/// A surface and all that produces its bricks.
+/// A surface, and everything that its bricks are produced with.
 class BrickMaker {
 public:
     BrickMaker(const renderer::TreeShape& shape, const voxelizer::Surface& surface, int slots);
 
-    /// Fills the first slots with these tiles, in one call.
+    /// Produces these tiles into the first slots, in one call.
     [[nodiscard]] std::vector<ProducedBrick> produce(const std::vector<renderer::Tile>& tiles);
     [[nodiscard]] ProducedBrick produce_one(const renderer::Tile& tile) { return produce({tile}).front(); }
     [[nodiscard]] const renderer::BrickPool& pool() const { return pool_; }

@@ -4,7 +4,7 @@
 
 namespace cairn::test {
 
-/// A small file with something of everything: indices, normals, texture, colours, sparse values, morph
+/// A small file with one of everything: indices, normals, texture, colours, sparse values, morph
 /// targets, skin, instances, animation, light and camera. Node 0 shows mesh 0, with skin; node 3 shows mesh
 /// 1, in instances.
 inline GltfFile rich_gltf_file() {

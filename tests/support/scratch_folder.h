@@ -9,7 +9,7 @@
 
 namespace cairn::test {
 
-/// A folder of its own for a test, removed at the end.
+/// A temporary folder of a test. The destructor removes it.
 class ScratchFolder {
 public:
     ScratchFolder()

@@ -45,7 +45,7 @@ void add_patch(Corners& corners, const dvec3& centre, double radius, dvec3 a, dv
     add_patch(corners, centre, radius, ab, bc, ca, depth - 1);
 }
 
-/// What of a polygon lies on the side of sign * p[axis] <= limit (Sutherland and Hodgman 1974).
+/// The part of a polygon where sign * p[axis] <= limit (Sutherland and Hodgman 1974).
 std::vector<dvec2> clipped(const std::vector<dvec2>& polygon, int axis, double sign, double limit) {
     std::vector<dvec2> kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {

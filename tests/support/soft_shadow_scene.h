@@ -14,15 +14,15 @@
 /// Occluders over a floor, under a light that looks straight down: light space is (x, z, height - y).
 namespace cairn::test {
 
-using Corners = std::vector<glm::dvec3>;  ///< of triangles, three each
+using Corners = std::vector<glm::dvec3>;  ///< corners of triangles, three each
 
-/// Quads are two triangles, a, b, c and a, c, d.
+/// A quad as two triangles: a, b, c and a, c, d.
 [[nodiscard]] Corners quad(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
                            const glm::dvec3& d);
-/// Level, turned by `angle` around the vertical.
+/// A horizontal square, turned by `angle` around the vertical.
 [[nodiscard]] Corners square(const glm::dvec3& centre, double half, double angle = 0.0);
 [[nodiscard]] Corners box(const glm::dvec3& low, const glm::dvec3& high);
-/// Of 20 * 4^depth triangles.
+/// A sphere of 20 * 4^depth triangles.
 [[nodiscard]] Corners ball(const glm::dvec3& centre, double radius, int depth);
 
 /// Node 0 "floor" holds the receivers, node 1 "thing" the occluders.
@@ -32,28 +32,28 @@ struct ShadowScene {
     scenes::Snapshot whole, occluders, receivers;
 };
 
-/// Shines down from `height` on x = z = 0.
+/// A light that shines down from `height` on x = z = 0.
 [[nodiscard]] optics::Light light_above(double height, double half_x, double half_z);
 
-/// Computes the map with fitted windows, or with those given. Needs a context.
+/// Computes the map with fitted windows, or with the given ones. Needs a context.
 [[nodiscard]] renderer::SoftShadowMap shadow_of(const ShadowScene& scene, const optics::Light& light,
                                                 const renderer::SoftShadowOptions& options);
 [[nodiscard]] renderer::SoftShadowMap shadow_of(const ShadowScene& scene, const optics::Light& light,
                                                 const renderer::SoftShadowOptions& options,
                                                 const renderer::ShadowFrustum& frustum);
 
-/// The points that the texels of the soft shadow map stand for.
+/// The point of a receiver that a texel of the soft shadow map stands for.
 struct ReceiverPoint {
     int x = 0;
     int y = 0;
-    glm::dvec3 position{0.0};  ///< light space
-    double visible = 1.0;      ///< what the map says
+    glm::dvec3 position{0.0};  ///< position in light space
+    double visible = 1.0;      ///< visible share of the light by the map
 };
-/// All texels that have a receiver.
+/// The points of all texels that have a receiver.
 [[nodiscard]] std::vector<ReceiverPoint> receiver_points(const renderer::SoftShadowMap& map);
 
-/// A truth for each point, and the error measure of Atty et al. 2005, section 4.2.1: the mean of absolute
-/// differences over all points that are in shadow or penumbra in either.
+/// The error by Atty et al. 2005, section 4.2.1, given a truth per point: the mean of absolute differences
+/// over all points that are in shadow or penumbra by the map or in truth.
 struct ShadowError {
     double mean = 0.0;
     double greatest = 0.0;
@@ -63,8 +63,8 @@ struct ShadowError {
 [[nodiscard]] ShadowError error_of(const std::vector<ReceiverPoint>& points,
                                    const std::vector<double>& truth);
 
-/// The share of the light that is seen past a flat convex polygon parallel to it: exact, by clipping its
-/// projection. All in light space; the polygon's points go around at depth `depth`.
+/// The share of the light that is seen past a flat convex polygon parallel to it: exact, by clipping the
+/// polygon's projection. Everything is in light space; the polygon's points are in order, at depth `depth`.
 [[nodiscard]] double visible_past(const std::vector<glm::dvec2>& polygon, double depth,
                                   const glm::dvec3& point, const glm::dvec2& light_half);
 

@@ -56,7 +56,7 @@ double hidden_by(const renderer::SoftShadowMap& map, const interop::MicroPatch& 
         patch_depth * glm::mix(from.low, from.high, (texel + 1.0) / double(map.options().occluder_size));
     const dvec2 receiver =
         depth * glm::mix(onto.low, onto.high, (dvec2(x, y) + 0.5) / double(map.options().receiver_size));
-    // Back through the patch's plane onto the light's.
+    // Projects from the receiver through the patch's plane onto the light's plane.
     const double scale = depth / (depth - patch_depth);
     const dvec2 covered = glm::min(receiver + (high - receiver) * scale, half) -
                           glm::max(receiver + (low - receiver) * scale, -half);

@@ -16,8 +16,8 @@
 
 namespace cairn::test {
 
-/// A square of voxels at height 1 over a floor that is a mesh, under a rectangle of light: what each pixel
-/// sees of the light has a closed form.
+/// A square of voxels at height 1 over a floor that is a mesh, under a rectangular light: the share of
+/// the light that each pixel sees has a closed form.
 class SquareOverFloorScene {
 public:
     static constexpr double square_half = 0.5;
@@ -34,7 +34,7 @@ public:
              .voxels_hidden = true});
     }
 
-    /// @param moved  of the light's middle, from above the square's.
+    /// @param moved  offset of the light's middle from the place above the square's middle
     [[nodiscard]] renderer::View view(int rays, bool cones = false, const glm::dvec2& moved = {}) const {
         renderer::View view;
         view.size.width = size_;
@@ -71,7 +71,7 @@ public:
 
 private:
     int size_;
-    /// With crumbs far beside the picture, so that the root's voxels are as wide as the widest cones.
+    /// Adds crumbs far beside the picture, so that the root's voxels are as wide as the widest cones.
     static std::vector<glm::vec3> square_and_crumbs() {
         std::vector<glm::vec3> corners =
             quad({-0.5F, 1, -0.5F}, {-0.5F, 1, 0.5F}, {0.5F, 1, 0.5F}, {0.5F, 1, -0.5F});

@@ -51,7 +51,7 @@ scenes::Scene triangles(std::vector<vec3> corners) {
 }
 
 scenes::Scene ball_over_floor() {
-    // An icosahedron, each side in 16 (Euclid's golden rectangles).
+    // An icosahedron (Euclid's golden rectangles), each side divided in 16.
     const float g = 0.5F * (1.0F + std::sqrt(5.0F));
     std::array<vec3, 12> p = {vec3(-1, g, 0), vec3(1, g, 0), vec3(-1, -g, 0), vec3(1, -g, 0),
                               vec3(0, -1, g), vec3(0, 1, g), vec3(0, -1, -g), vec3(0, 1, -g),

@@ -2,7 +2,7 @@
 
 #include "scenes/scene.h"
 
-/// Small scenes whose right picture can be told by hand. Flat normals, no textures.
+/// Small scenes whose pictures can be predicted by hand, with flat normals and without textures.
 namespace cairn::test {
 
 /// A ball of 320 triangles, a little above a floor of two; tilted so that nothing lies on voxel planes.
@@ -11,7 +11,7 @@ namespace cairn::test {
 /// The square |x|, |z| <= 0.5 at y = 1 over the floor |x|, |z| <= 2 at y = 0.
 [[nodiscard]] scenes::Scene square_over_floor();
 
-/// The square |x|, |z| <= 1 at y = 0 in one colour (linear).
+/// The square |x|, |z| <= 1 at y = 0 in one linear colour.
 [[nodiscard]] scenes::Scene sheet(const glm::vec4& color);
 
 /// A scene of one triangle mesh, not indexed, in one white material.

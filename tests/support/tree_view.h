@@ -11,7 +11,7 @@
 #include "renderer/pool/tree.h"
 #include "shaders/interop/pool.h"
 
-/// Looks at a Tree from outside: what its entries say, in the mirror and on the GPU.
+/// A Tree seen from outside: its entries, in the mirror and on the GPU.
 namespace cairn::test {
 
 inline std::size_t bytes_of_blocks(const renderer::TreeShape& shape, int blocks) {
@@ -45,15 +45,15 @@ inline ::testing::AssertionResult gpu_equals_mirror(const renderer::Tree& tree) 
     return ::testing::AssertionSuccess();
 }
 
-/// What a walk from the root finds.
+/// Result of a walk from the root.
 struct Reached {
-    std::vector<std::uint32_t> entries;  ///< all that are reached, the root first
-    int blocks = 1;                      ///< the root's included
+    std::vector<std::uint32_t> entries;  ///< entries that are reached, the root first
+    int blocks = 1;                      ///< blocks that are reached, the root's included
     int bricks = 0;
 };
 
-/// Walks the whole tree. Fails the test when a block or a slot has two owners, or when a child is not the
-/// tile that the regular subdivision has there.
+/// Walks the whole tree. Fails the test if a block or a slot has two owners, or if a child is not the tile
+/// that the regular subdivision has at its place.
 inline Reached walk(const renderer::Tree& tree, int slot_count) {
     const auto child_count = std::uint32_t(tree.shape().child_count());
     Reached reached;

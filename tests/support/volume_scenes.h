@@ -14,7 +14,7 @@
 #include "renderer/view/view.h"
 #include "scenes/volume/volume.h"
 
-/// Volumes for tests, and how pictures of them are compared.
+/// Volumes for tests, and the comparison of their pictures.
 namespace cairn::test {
 
 /// Soft blobs in empty space, with values on all sides of the box.
@@ -50,7 +50,7 @@ inline scenes::Volume blobs(const glm::ivec3& size, unsigned seed, int count = 1
     return volume;
 }
 
-/// Nothing under a threshold, then a coloured ramp.
+/// A transfer function: nothing below a threshold, then a coloured ramp.
 inline renderer::TransferFunction ramp(double extinction, double threshold = 0.1) {
     return renderer::TransferFunction({{0.0, {0.9, 0.2, 0.1}, 0.0},
                                        {threshold, {0.9, 0.2, 0.1}, 0.0},
@@ -58,7 +58,8 @@ inline renderer::TransferFunction ramp(double extinction, double threshold = 0.1
                                        {1.0, {0.2, 0.4, 1.0}, extinction}});
 }
 
-/// Lit from everywhere alike and with no shadows: a pixel is what the volume emits and lets through.
+/// A view lit alike from everywhere and without shadows: a pixel shows what the volume emits and lets
+/// through.
 inline renderer::View glowing_view(const scenes::Bounds& bounds, int width = 64, int height = 48) {
     renderer::View view;
     view.size.width = width;

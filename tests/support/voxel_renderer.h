@@ -8,7 +8,7 @@
 
 namespace cairn::test {
 
-/// The tree of a content and the options of its renderer in one, as tests vary them.
+/// Options of a content's tree and of its renderer in one, as tests vary them.
 struct Settings {
     renderer::TreeOptions tree = {};
     renderer::PoolSizes pools = {};

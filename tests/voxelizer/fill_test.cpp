@@ -1,4 +1,4 @@
-// Solid fill: against closed forms, against solid angles, and against itself seen from elsewhere.
+// Solid fill: against closed forms, against solid angles, and against itself in other orientations.
 #include "voxelizer/solid/fill.h"
 
 #include <cmath>
@@ -129,7 +129,7 @@ TEST(SolidFill, AgreesWithSolidAnglesOnShellsOfEitherOrientation) {
     }
 }
 
-/// Inside by the rows along one axis alone.
+/// The inside by the rows along one axis alone.
 BitGrid interior_along(int axis, const Mesh& mesh, const Region& region) {
     const Surface surface = lattice_surface(mesh, 1 << region.level);
     const RowCrossings rows(surface, region, axis, std::size_t(1) << 30);
@@ -356,7 +356,7 @@ TEST(SolidFill, SaysWhatWouldFitBeforeItTakesTooMuch) {
     EXPECT_THROW(SolidFill(surface, region, 1000), Error);
 }
 
-/// A snapshot of one closed box, |x|, |y|, |z| <= 1, and where its copies stand.
+/// A snapshot of one closed box, |x|, |y|, |z| <= 1, with copies at some places.
 struct Boxes {
     explicit Boxes(const std::vector<glm::dmat4>& places) {
         Random random(20);

@@ -39,7 +39,7 @@ void mark(const LatticeTriangle& triangle, const Region& region, const glm::ivec
     mark(triangle, region, middle, second, bits);
 }
 
-/// Mostly a few voxels a side; now and then long, or with more rows than one workgroup takes.
+/// A region of mostly a few voxels per side; now and then long, or with more rows than one workgroup takes.
 Region random_region(Random& random) {
     Region region;
     region.level = int(random.between(0, LATTICE_BITS));
@@ -57,7 +57,8 @@ Region random_region(Random& random) {
     return region;
 }
 
-/// Where the region is, and mostly in the shaders' range: of its size, of the cube's, or far larger.
+/// A triangle near the region, mostly within the shaders' range: as large as the region, as the cube, or far
+/// larger.
 LatticeTriangle triangle_near(Random& random, const Region& region) {
     const std::int64_t side = region.voxel_side();
     const glm::i64vec3 low = glm::i64vec3(region.origin) * side;

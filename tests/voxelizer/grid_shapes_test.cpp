@@ -1,4 +1,4 @@
-// Grids that are no cubes, and grids by the size of a voxel.
+// Grids that are not cubes, and grids by the size of a voxel.
 #include <gtest/gtest.h>
 
 #include "base/error.h"
@@ -14,7 +14,7 @@ scenes::Bounds box(const glm::dvec3& low, const glm::dvec3& high) {
     return bounds;
 }
 
-/// From the bounds to the grid's sides, in voxels.
+/// Distances from the bounds to the grid's sides, in voxels.
 struct Margins {
     glm::dvec3 low, high;
 };

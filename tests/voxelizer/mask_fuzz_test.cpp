@@ -1,5 +1,5 @@
 // Alpha masks against clipping: the part of a triangle inside a voxel is clipped to each texel and to where
-// its alpha passes. A witness that shares nothing with the shaders, nor with the definition
+// its alpha passes. This shares nothing with the shaders, nor with the definition
 // (voxelizer/surface/exact_mask.h). CAIRN_FUZZ_TRIALS and CAIRN_FUZZ_SEED ask for a longer trial.
 #include <gtest/gtest.h>
 
@@ -17,19 +17,19 @@ using namespace cairn::test;
 using scenes::Wrap;
 using Values = ClippedTriangle<Int128>::Values;
 
-constexpr int steps = 4096;  // of a coordinate, across the unit cube
+constexpr int steps = 4096;  // steps of a coordinate across the unit cube
 
-/// A texture of few texels, and triangles whose every number is known in whole units.
+/// A texture of few texels, and triangles whose numbers are all in whole units.
 struct Trial {
     int width, height;
     Wrap wrap_s, wrap_t;
     std::vector<std::uint8_t> alphas;
-    int cutoff;  ///< of 255
+    int cutoff;  ///< alpha cutoff, in [0, 255]
     int resolution;
     bool has_vertex_alphas;
     struct Triangle {
-        std::array<glm::ivec3, 3> corners;    ///< `steps` across the cube
-        std::array<glm::ivec2, 3> texcoords;  ///< TEXEL_UNITS across a texel
+        std::array<glm::ivec3, 3> corners;    ///< corners, in units of 1 / steps of the cube
+        std::array<glm::ivec2, 3> texcoords;  ///< texture coordinates, in units of 1 / TEXEL_UNITS of a texel
         std::array<int, 3> alphas;
     };
     std::vector<Triangle> triangles;
@@ -121,7 +121,7 @@ Wrap random_wrap(Random& random) {
     return all[std::size_t(random.between(0, 2))];
 }
 
-/// Half of them in whole voxels and in whole texels, where sides and corners meet.
+/// Random triangles, half of them in whole voxels and whole texels, where sides and corners meet.
 Trial::Triangle random_triangle(Random& random, const Trial& trial) {
     Trial::Triangle t;
     const int voxel = steps / trial.resolution;

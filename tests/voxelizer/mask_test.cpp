@@ -174,8 +174,8 @@ TEST_F(MaskTest, TexturesRepeatedWithoutEndAreExact) {
     scene.scene.images[0].rgba[4 * (15 * 16 + 2) + 3] = 255;
     add_sheet(scene, 300.0F);
     const Surface surface = scene.surface(2);
-    // Too many texels for the definition to look at one by one: compared by the halves of the finer grid
-    // instead.
+    // There are too many texels to test one by one by the definition, so that halves of the finer grid are
+    // compared.
     const BitGrid coarse = voxelize(surface);
     const BitGrid fine = voxelize(scene.surface(64));
     EXPECT_TRUE(same_bits(coarse, build_pyramid(fine).level(5)));

@@ -1,5 +1,5 @@
-// What must not change the voxels, and what must change them in a known way: no truth is needed to tell, so
-// that the surfaces may be large. The method under test is `conservative`.
+// Changes of a surface that must not change its voxels, or must change them in a known way. They need no
+// truth, so surfaces may be large. The method under test is `conservative`.
 #include <algorithm>
 #include <numeric>
 
@@ -75,7 +75,7 @@ protected:
     }
 
     std::vector<LatticeTriangle> triangles_;
-    BitGrid bits_;  ///< of all
+    BitGrid bits_;  ///< bits of the whole grid
 };
 
 /// One of the 48 ways to put a cube onto itself: axis i of the image is axis `from[i]`, turned by `sign[i]`.
@@ -87,7 +87,7 @@ struct Turn {
             from == glm::ivec3(0, 1, 2) || from == glm::ivec3(1, 2, 0) || from == glm::ivec3(2, 0, 1);
         return even == (sign.x * sign.y * sign.z > 0);
     }
-    /// About the middle of [0, side]^3.
+    /// The image of a point under the turn about the middle of [0, side]^3.
     template <class Vector>
     [[nodiscard]] Vector operator()(const Vector& p, typename Vector::value_type side) const {
         Vector out;
@@ -181,8 +181,8 @@ TEST_P(Metamorphic, TheOrderOfCornersDoesNotMatter) {
     } while (std::next_permutation(&order[0], &order[0] + 3));
 }
 
-/// The triangle's parts between the lattice points a + (i ab + j ac) / sides, where the sides are multiples
-/// of that.
+/// The parts of a triangle between the lattice points a + (i ab + j ac) / sides; ab and ac must be multiples
+/// of `sides`.
 void subdivide(const LatticeTriangle& t, std::int64_t sides, std::vector<LatticeTriangle>& out) {
     const glm::i64vec3 ab = (t[1] - t[0]) / sides;
     const glm::i64vec3 ac = (t[2] - t[0]) / sides;

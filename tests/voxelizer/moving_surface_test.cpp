@@ -1,4 +1,4 @@
-// Surfaces moved on the GPU hold the bits of snapshots taken on the CPU, and cost no memory a frame.
+// Surfaces moved on the GPU hold the bits of snapshots taken on the CPU, and cost no memory per frame.
 
 #include <limits>
 
@@ -31,7 +31,7 @@ TEST_F(Moving, HoldsTheBitsOfSnapshots) {
     EXPECT_GT(vertices_compared_, 20);
 }
 
-/// Coordinates of every size, so that all roundings of products, sums and of the step to float are met.
+/// Coordinates of every size, so that all roundings of products, sums and of the conversion to float occur.
 TEST_F(Moving, RoundsAsTheCpuDoes) {
     for (std::uint32_t seed = 10; seed < 40; ++seed) {
         Random random(seed);
@@ -55,7 +55,8 @@ TEST_F(Moving, RoundsAsTheCpuDoes) {
     }
 }
 
-/// So far out that the last bit of a double is a good part of a lattice unit: the order of sums shows.
+/// A scene so far out that the last bit of a double is a good part of a lattice unit: the order of sums
+/// matters.
 TEST_F(Moving, FarFromTheOriginTheOrderOfOperationsHolds) {
     Random random(41);
     std::vector<glm::vec3> points;
@@ -69,7 +70,7 @@ TEST_F(Moving, FarFromTheOriginTheOrderOfOperationsHolds) {
     EXPECT_TRUE(same_vertices(moving.surface(), truth));
 }
 
-/// Just between two lattice points, on either side of 0.
+/// Points halfway between two lattice points, on either side of 0.
 TEST_F(Moving, HalvesAreRoundedUp) {
     const Grid grid = unit_grid(16);
     std::vector<glm::vec3> positions;
@@ -209,7 +210,7 @@ TEST_F(Moving, TooManyMorphTargetsAreTheCpus) {
     }
 }
 
-/// Counts the calls of an OpenGL function while it lives, through the loader's pointer to it.
+/// Counts the calls of an OpenGL function while the object lives, through the loader's pointer.
 template <auto* Pointer>
 class Counted;
 template <typename Result, typename... Arguments, Result (**Pointer)(Arguments...)>
@@ -333,7 +334,7 @@ TEST_F(Moving, AnEmptySceneHasNoVoxels) {
 #ifdef CAIRN_SCENE_DATA
 class MovingData : public Moving, public ::testing::WithParamInterface<const char*> {};
 
-/// Every animation of the scene, in it and beyond its ends; and the rest pose.
+/// Plays every animation of the scene, within and beyond its ends, and the rest pose.
 TEST_P(MovingData, HoldsTheBitsOfSnapshots) {
     const scenes::Scene scene = scenes::load(std::string(CAIRN_SCENE_DATA) + "/" + GetParam());
     expect_the_snapshots(scene, {}, {0.0}, 64);

@@ -24,7 +24,8 @@ BitGrid random_grid(const glm::ivec3& size, std::uint32_t seed, int one_in) {
     return bits;
 }
 
-/// Straight from the finest level: a voxel of level i covers 2^i voxels along each axis that is reduced.
+/// A level straight from the finest one: a voxel of level i covers 2^i voxels along each axis that is
+/// reduced.
 BitGrid defined_level(const BitGrid& finest, int level, Reduction reduction) {
     const glm::ivec3 shift(level, level, reduction == Reduction::xyz ? level : 0);
     BitGrid out((finest.size + (glm::ivec3(1) << shift) - 1) >> shift);

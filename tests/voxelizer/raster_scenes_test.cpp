@@ -1,4 +1,4 @@
-// The raster methods on whole scenes, against the exact reference: what each is known to miss and to add.
+// The raster methods on whole scenes, against the exact reference: the voxels that each misses and adds.
 #include <array>
 #include <map>
 #include <queue>
@@ -24,7 +24,7 @@ Surface surface_of(const std::string& scene_name, int resolution) {
     return build_surface(scene, snapshot, grid_around(snapshot.bounds, resolution));
 }
 
-/// In percent of the voxels of the truth.
+/// Missing and extra voxels, in percent of the voxels of the truth.
 struct Limits {
     double least_missing, most_missing, most_extra;
 };

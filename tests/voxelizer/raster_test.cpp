@@ -43,9 +43,9 @@ private:
 };
 
 const Region sixteen{4, glm::ivec3(0), glm::ivec3(16)};
-constexpr std::int64_t voxel = N / 16;  // lattice units a voxel of `sixteen`
+constexpr std::int64_t voxel = N / 16;  // lattice units per voxel of `sixteen`
 
-/// Two triangles across the whole cube and more, where a coordinate has one value.
+/// Two triangles across the whole cube and more, in a plane of constant coordinate.
 std::vector<LatticeTriangle> wall(int axis, std::int64_t at) {
     std::array<glm::i64vec3, 4> corners;
     for (int i = 0; i < 4; ++i) {
@@ -67,7 +67,7 @@ TEST_F(RasterTest, EveryMethodHasAName) {
 
 class RasterSlices : public RasterTest, public ::testing::WithParamInterface<int> {};
 
-/// Walls in many slices, and the voxels that they fill: 2 x 2 a slice.
+/// Walls in many slices, and the voxels that they fill: 2 x 2 per slice.
 BitGrid walls_in_slices(int axis, const Region& region, std::vector<LatticeTriangle>& walls) {
     BitGrid expected(region.size);
     const std::int64_t side = region.voxel_side();
@@ -158,7 +158,7 @@ TEST_F(RasterTest, EnlargedTrianglesOfAllKindsMissNothing) {
 }
 
 TEST_F(RasterTest, ThinMethodsMarkWhatTheTriangleTouches) {
-    // Also deep down, where corners lie a million voxels away.
+    // Also at deep levels, where corners lie a million voxels away.
     Random random(52);
     for (const int level : {4, 8, 14, 18}) {
         const glm::i64vec3 middle(N / 2 + 12345);
@@ -181,7 +181,7 @@ TEST_F(RasterTest, ThinMethodsMarkWhatTheTriangleTouches) {
 }
 
 TEST_F(RasterTest, PartsOfARegionHaveTheBitsOfTheWholeButForRounding) {
-    // What lies within a float's rounding, or OpenGL's snapping, of a boundary may fall to either side.
+    // Voxels within a float's rounding, or OpenGL's snapping, of a boundary may fall to either side.
     Random random(53);
     std::vector<LatticeTriangle> triangles;
     for (int i = 0; i < 60; ++i)

@@ -11,7 +11,7 @@ namespace {
 
 using namespace cairn::test;
 
-/// What misses the root cube is left out, as build_surface does.
+/// A surface without the triangles that miss the root cube, as build_surface() makes it.
 void add_random(std::vector<LatticeTriangle>& triangles, Random& random, std::size_t count) {
     for (const std::size_t end = triangles.size() + count; triangles.size() < end;) {
         const LatticeTriangle t = random_triangle(random, lattice_side >> random.between(3, 12));
@@ -38,7 +38,7 @@ std::vector<std::uint32_t> brute_force(const TriangleIndex& index, std::size_t c
     return numbers;
 }
 
-/// Of any shape, also reaching outside the root cube, or lying outside.
+/// A random region of any shape, which may reach outside the root cube, or lie outside.
 Region random_region(Random& random) {
     Region region;
     region.level = int(random.between(0, 12));
@@ -72,7 +72,7 @@ TEST(RegionIndex, RegionsHaveExactlyTheTrianglesWhoseBoxesMeetThem) {
     }
 }
 
-/// As many small triangles in one eighth of an eighth of the cube, whatever is elsewhere.
+/// Adds small triangles in one eighth of an eighth of the cube.
 std::vector<LatticeTriangle> crowd(std::size_t elsewhere) {
     Random random(72);
     std::vector<LatticeTriangle> triangles;

@@ -133,7 +133,7 @@ protected:
         }
     }
 
-    /// Most triangles that reach such a grid reach far past it.
+    /// Compares in a grid that most triangles reach far past.
     void check_tiny_bounds(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                            const Surface& whole_surface) {
         const double extent = whole_surface.grid.voxel_size * coarse;
@@ -148,7 +148,7 @@ protected:
         }
     }
 
-    /// At rest, and in the middle of the first animation.
+    /// Compares a file at rest and in the middle of its first animation.
     static std::vector<scenes::When> moments(const scenes::Scene& scene) {
         std::vector<scenes::When> out(1);
         if (!scene.animations.empty())

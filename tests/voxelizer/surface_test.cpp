@@ -1,4 +1,4 @@
-// Grids, the flattening of scenes onto the lattice, bit grids and their file: nothing here needs OpenGL.
+// Grids, scenes on the lattice, bit grids and their file, all without OpenGL.
 #include "voxelizer/surface/surface.h"
 
 #include <limits>

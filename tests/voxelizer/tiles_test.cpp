@@ -1,4 +1,4 @@
-// Voxels that come tile by tile against the same grid voxelized at once.
+// Voxels that arrive tile by tile, against the same grid voxelized at once.
 #include <tuple>
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ using namespace cairn::test;
 
 constexpr int side = 32;
 
-/// Puts tiles together again, and checks that they come as VoxelWriter wants them.
+/// Puts tiles together, and checks that they arrive in the order of VoxelWriter.
 class Collector {
 public:
     explicit Collector(const Grid& grid) : whole(grid.resolution) {}
@@ -52,7 +52,7 @@ private:
 
 class TilesTest : public ConservativeTest {
 protected:
-    /// The same bits whether marked at once, in a region for each tile, or in regions of many.
+    /// Checks that bits are the same if marked at once, in a region per tile, or in regions of many tiles.
     TileStatistics expect_as_whole(const Surface& surface, const std::string& what) {
         const GpuSurface on_gpu = upload(surface);
         const BitGrid truth = voxelizer().voxelize(on_gpu, whole(surface.grid));

@@ -1,4 +1,4 @@
-// What voxelizers stumble over, one test a trap; voxelizer_test.cpp holds the traps of single triangles.
+// Traps for voxelizers, one test per trap. voxelizer_test.cpp has the traps of single triangles.
 #include <cmath>
 #include <functional>
 
@@ -86,7 +86,7 @@ TEST_F(Traps, ThousandsOfVoxelsAlongAnAxisAreExact) {
 // ----------------------------------------------------------------------------
 
 TEST_F(Traps, CornersAtTheEndsOfTheShadersRangeAreExact) {
-    // The largest normals there are, seen through the smallest voxels, where each unit counts.
+    // The largest normals with the smallest voxels, for which each unit counts.
     Random random(62);
     int met = 0;
     for (int i = 0; i < 400; ++i) {
@@ -231,7 +231,8 @@ TEST_F(Traps, NegativeAndUnevenScalesPlaceTheSameTriangles) {
 // ---- One shape, written in every way that glTF has
 // ------------------------------------------------------------------
 
-/// A convex hexagon in the plane z = x + 2 y + 7: however it is cut into triangles, their union is the same.
+/// A convex hexagon in the plane z = x + 2 y + 7. The union of its triangles does not depend on how it is
+/// cut.
 const std::vector<int> hexagon = {10, 5, 27, 30, 0, 37, 50, 10, 77, 44, 24, 99, 25, 35, 102, 6, 20, 53};
 using Write = std::function<void(GltfFile&)>;
 

@@ -23,7 +23,7 @@ protected:
     [[nodiscard]] static TreeShape shape() { return make_tree_shape(GetParam().n, GetParam().m, 4096); }
 };
 
-/// Leaves out what misses the root cube, as build_surface does.
+/// A surface without the triangles that miss the root cube, as build_surface() makes it.
 voxelizer::Surface random_surface(std::size_t count, std::uint32_t seed) {
     Random random(seed);
     std::vector<LatticeTriangle> triangles;

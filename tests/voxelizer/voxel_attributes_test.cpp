@@ -18,7 +18,7 @@ namespace {
 
 using namespace cairn::test;
 
-/// One primitive of one material, in a grid of the unit cube; the same for the truth.
+/// A primitive of one material in a grid of the unit cube, for the voxelizer and for the truth.
 struct Painted {
     scenes::Scene scene;
     scenes::Primitive primitive;
@@ -150,7 +150,7 @@ protected:
         result.attributes = painter_->gather(surface, part, result.bits);
         return result;
     }
-    /// Every voxel with more than a speck of surface agrees with the integral.
+    /// Checks that every voxel with more than a speck of surface agrees with the integral.
     static void expect_true(const Result& result, const std::vector<TruthTriangle>& triangles,
                             const glm::ivec3& origin, double color_error, double degrees);
 
@@ -293,7 +293,7 @@ TEST_F(VoxelAttributesTest, ASubsetGathersItsTrianglesAlone) {
     EXPECT_EQ(attributes.normals, alone.attributes.normals);
 }
 
-// As the inside of a solid: occupied, and no triangle near.
+// Voxels like the inside of a solid: occupied, without a triangle nearby.
 TEST_F(VoxelAttributesTest, VoxelsWithoutSurfaceHaveNoColour) {
     const Painted painted = random_triangles(11, 1, true);
     const GpuSurface surface = upload(painted.surface(unit_cube(32)));

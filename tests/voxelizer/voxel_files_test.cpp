@@ -29,7 +29,7 @@ using namespace cairn::test;
 struct Voxels {
     Grid grid;
     BitGrid bits;
-    VoxelAttributes attributes;  ///< of all, or empty
+    VoxelAttributes attributes;  ///< attributes of all voxels, or empty
 };
 
 /// Calls visit(tile) for each tile that holds voxels, in the writers' order.
@@ -87,7 +87,7 @@ std::string write_file(const Voxels& voxels, const ScratchFolder& folder, const 
     return path;
 }
 
-/// Passes when another reader sees the voxels of "expected" in the folder.
+/// Passes if another reader sees the voxels of "expected" in the folder.
 void expect_reads(const std::string& path, const ScratchFolder& folder, double tolerance) {
     const std::string command = fmt::format("{} {} {} {} {} > {} 2>&1", CAIRN_TEST_PYTHON, CAIRN_READ_VOXELS,
                                             path, folder.file("expected"), tolerance, folder.file("answer"));
@@ -97,7 +97,7 @@ void expect_reads(const std::string& path, const ScratchFolder& folder, double t
     EXPECT_EQ(code, 0) << path << ": " << answer;
 }
 
-/// Passes when another reader sees the same voxels in the same places.
+/// Passes if another reader sees the same voxels in the same places.
 void expect_read_back(const Voxels& voxels, const std::string& ending, double tolerance) {
     const ScratchFolder folder;
     write_expected(voxels, folder.file("expected"));
@@ -213,7 +213,7 @@ TEST_P(VoxelFiles, TheSameVoxelsAreTheSameFile) {
 
 INSTANTIATE_TEST_SUITE_P(All, VoxelFiles, ::testing::ValuesIn(voxel_file_endings()), name_of_ending);
 
-// The tree's upper nodes are 4096 voxels a side.
+// The tree's upper nodes have 4096 voxels per side.
 TEST(VdbWriter, ManyUpperNodesAreReadBack) {
     const Grid grid{{0.0, 0.0, -5.0}, 1.0 / 1024, {9000, 300, 8300}};
     const ScratchFolder folder;
@@ -237,7 +237,7 @@ TEST(VdbWriter, ManyUpperNodesAreReadBack) {
     expect_reads(folder.file("a.vdb"), folder, 0.0);
 }
 
-// OpenVDB's own tool lists the grids, by what their heads say.
+// OpenVDB's tool lists the grids by their headers.
 TEST(VdbWriter, ItsGridsAreListedByVdbPrint) {
     if (std::system("vdb_print -version > /dev/null 2>&1") != 0) GTEST_SKIP() << "vdb_print is not installed";
     const Voxels voxels = random_voxels({40, 70, 129}, 13, true);

@@ -21,7 +21,7 @@ constexpr std::int64_t N = lattice_side;
 
 class VoxelizerTest : public ConservativeTest {
 protected:
-    /// Each triangle alone has exactly the voxels that it meets.
+    /// Checks that each triangle alone has exactly the voxels that it meets.
     void expect_exact(const std::vector<LatticeTriangle>& triangles, const Region& region) {
         std::vector<LatticeTriangle> near;
         for (const LatticeTriangle& t : triangles) {
@@ -41,7 +41,7 @@ private:
 };
 
 const Region sixteen{4, glm::ivec3(0), glm::ivec3(16)};
-constexpr std::int64_t voxel = N / 16;  // lattice units a voxel of `sixteen`
+constexpr std::int64_t voxel = N / 16;  // lattice units per voxel of `sixteen`
 
 /// The same triangles with the axes exchanged in all six ways, and mirrored.
 std::vector<LatticeTriangle> turned(const std::vector<LatticeTriangle>& triangles) {

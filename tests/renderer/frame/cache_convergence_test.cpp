@@ -1,4 +1,5 @@
-// Pictures refined in slices of rows while the pools are full: how much is produced until they come to rest.
+// Pictures that are refined in slices of rows while the pools are full: how much is produced until they
+// settle.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -20,7 +21,7 @@ using renderer::BatchPace;
 using renderer::Renderer;
 using renderer::View;
 
-/// What a refinement took until it came to rest.
+/// Figures of a refinement until it is settled.
 struct Course {
     int steps = 0;
     std::uint64_t produced = 0;
@@ -32,7 +33,7 @@ struct Course {
 
 Course refine(Renderer& renderer, const View& view) {
     constexpr int most_steps = 2000;
-    app::Pace pace(1e-3, app::Pace::least_pixels);  // no time at all, in bands as low as they get
+    app::Pace pace(1e-3, app::Pace::least_pixels);  // almost no time: bands are as low as possible
     app::Refinement refinement(view);
     Course course;
     for (; !refinement.settled() && course.steps < most_steps; ++course.steps) {
@@ -60,7 +61,8 @@ protected:
     [[nodiscard]] Renderer make(const Settings& options = {}) const {
         return voxel_renderer(scene_, scenes::take_snapshot(scene_), options);
     }
-    /// A renderer whose pool holds a share of what a view needs, and is full with bricks of other views.
+    /// A renderer whose pool holds a share of the bricks that a view needs, and is full of bricks of other
+    /// views.
     [[nodiscard]] Renderer full(std::uint64_t needed, double share) const {
         Settings options;
         options.pools.brick_bytes = std::size_t(double(needed) * share) * slot_bytes;
@@ -115,7 +117,7 @@ TEST_F(CacheConvergence, PoolThatHoldsNoBandComesToRest) {
     EXPECT_TRUE(course.settled) << "it goes on without end";
     EXPECT_FALSE(course.converged) << "the pool was not too small";
     EXPECT_LE(course.produced, needed * 2) << "the same bricks are produced again and again";
-    // Once it is at rest, more visits change nothing.
+    // Once the picture is settled, more visits change nothing.
     int idle = 0;
     for (int visit = 0; visit < 400 && idle < 3; ++visit) {
         const renderer::Frame frame =
@@ -133,15 +135,16 @@ TEST_F(CacheConvergence, PoolThatHoldsNoBandComesToRest) {
     EXPECT_EQ(renderer.render(behind_).image.rgba, make().render(behind_).image.rgba);
 }
 
-/// What answering costs, for a clock that only these tests move.
-double overrun(BatchPace& pace, double ms_a_query, double budget_ms, int frames) {
+/// Answers queries of a fixed cost in some frames, on a clock of its own. @return the longest overrun of the
+/// budget.
+double overrun(BatchPace& pace, double ms_per_query, double budget_ms, int frames) {
     double worst = 0.0;
     for (int frame = 0; frame < frames; ++frame) {
         double now = 0.0;
         do {
             const std::size_t batch = pace.batch(budget_ms - now);
-            now += ms_a_query * double(batch);
-            pace.learn(ms_a_query * double(batch), batch);
+            now += ms_per_query * double(batch);
+            pace.learn(ms_per_query * double(batch), batch);
         } while (now < budget_ms);
         worst = std::max(worst, now - budget_ms);
     }
@@ -149,14 +152,14 @@ double overrun(BatchPace& pace, double ms_a_query, double budget_ms, int frames)
 }
 
 TEST(BatchPaceTest, FrameOverrunsByAFewMillisecondsOnceTheCostIsKnown) {
-    for (const double ms_a_query : {0.01, 0.1, 0.5, 2.0, 20.0}) {
+    for (const double ms_per_query : {0.01, 0.1, 0.5, 2.0, 20.0}) {
         for (const double budget_ms : {0.0, 5.0, 30.0}) {
             BatchPace pace;
-            (void)overrun(pace, ms_a_query, budget_ms, 30);
-            const double least_batch_ms = ms_a_query * double(BatchPace::least);
-            EXPECT_LE(overrun(pace, ms_a_query, budget_ms, 100),
+            (void)overrun(pace, ms_per_query, budget_ms, 30);
+            const double least_batch_ms = ms_per_query * double(BatchPace::least);
+            EXPECT_LE(overrun(pace, ms_per_query, budget_ms, 100),
                       std::max(BatchPace::overrun_ms, least_batch_ms) * 1.01)
-                << ms_a_query << " ms a query, " << budget_ms << " ms for a frame";
+                << ms_per_query << " ms per query, " << budget_ms << " ms per frame";
         }
     }
 }

@@ -1,4 +1,5 @@
-// The caches under stress: pools far too small, thousands of frames, sizes that change, and what comes back.
+// The caches under stress: pools far too small, thousands of frames, sizes that change, and bricks that
+// return.
 #include <algorithm>
 #include <fstream>
 #include <set>
@@ -73,7 +74,7 @@ protected:
                              GLsizeiptr(mask_bytes), noise(mask_bytes).data());
     }
     static Tile tile(int i) { return {3, {i, 2 * i, 5}}; }
-    /// Random bytes in all slots of the pool leave it and come back, each to another slot.
+    /// Random bytes in all slots of the pool leave it and return, each to another slot.
     static void expect_bricks_back(const BrickPool& pool);
 };
 
@@ -151,7 +152,7 @@ protected:
     [[nodiscard]] Renderer make(const Settings& options = {}) const {
         return voxel_renderer(scene_, snapshot_, options);
     }
-    /// A pool of a share of the bricks that the view needs, and as few nodes as can be.
+    /// Settings with a pool for a share of the view's bricks, and for as few nodes as possible.
     [[nodiscard]] Settings share_of(double share, const View& view) const {
         Renderer fresh = make();
         const renderer::Frame frame = fresh.render(view);
@@ -241,7 +242,7 @@ TEST_F(CacheStability, StaticCameraMarchesNothing) {
     const renderer::Frame frame = renderer.render(changed);
     EXPECT_EQ(frame.image.rgba, make().render(changed).image.rgba);
     EXPECT_GT(frame.statistics.passes, 0) << "the light changed";
-    // Some rows of a picture do not make the whole of it known.
+    // After some rows of a picture the whole of it is not known.
     (void)renderer.render(view_, {.rows = renderer::Rows{0, 40}});
     const renderer::Frame last = renderer.render(view_);
     EXPECT_EQ(last.image.rgba, first.image.rgba);
@@ -358,7 +359,7 @@ std::size_t resident_bytes() {
     return resident * std::size_t(sysconf(_SC_PAGESIZE));
 }
 
-/// Names that OpenGL knows.
+/// The number of names that OpenGL holds.
 std::size_t gl_objects() {
     std::size_t count = 0;
     for (GLuint name = 1; name < 4096; ++name) {
@@ -369,7 +370,7 @@ std::size_t gl_objects() {
     return count;
 }
 
-/// Somewhere around the scene or in it, looking at some point of it.
+/// A camera around the scene or in it, which looks at some point of it.
 View random_view(const View& like, const scenes::Bounds& bounds, Random& random) {
     auto unit = [&] { return double(random.between(0, 1000)) / 1000.0; };
     const glm::dvec3 centre = 0.5 * (bounds.low + bounds.high);

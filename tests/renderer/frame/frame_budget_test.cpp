@@ -1,4 +1,4 @@
-// Frames that must not take long: what is missing is stood in for, and the picture converges.
+// Frames with a budget: ancestors replace missing bricks, and the picture converges.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -109,7 +109,7 @@ TEST_F(FrameBudgetTest, PoolsTooSmallLowerTheLevelOfDetailAndStandStill) {
     const optics::Image expected = make().render(view_).image;
     EXPECT_EQ(ours.rgba, before.rgba) << "the picture flickers";
     EXPECT_LT(different_silhouettes(ours, expected), expected.rgba.size() / 4 / 6);
-    // A patient frame goes on with the same pools.
+    // A frame without a budget goes on with the same pools.
     EXPECT_EQ(renderer.render(view_).image.rgba, expected.rgba);
 }
 
@@ -135,7 +135,7 @@ TEST_F(FrameBudgetTest, FullPoolThatHoldsTheViewProducesItOnce) {
     int frames = 0;
     renderer::FrameStatistics last;
     do {
-        // In parts, as a viewer does.
+        // Frames in parts, as in a viewer.
         const renderer::Rows rows{(frames % 4) * 30, 30};
         last = renderer.render(behind, {.rows = rows, .budget = Milliseconds(0.0)}).statistics;
         produced += last.bricks_produced;

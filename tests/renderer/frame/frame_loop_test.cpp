@@ -1,4 +1,4 @@
-// The frame loop itself: its three goals on one content, and what its statistics are of.
+// The frame loop: its three goals on one content, and its statistics.
 #include "renderer/frame/frame_loop.h"
 
 #include <chrono>
@@ -96,7 +96,7 @@ TEST_F(FrameLoopTest, StatisticsAreThoseOfTheLastFrameWhateverIsProducedAhead) {
     EXPECT_EQ(loop->statistics().tile_queries, frame.tile_queries);
     EXPECT_EQ(loop->statistics().bricks_prefetched, 0U);
 
-    (void)loop->render(view_, all(), SHOW_SURFACE);  // known already
+    (void)loop->render(view_, all(), SHOW_SURFACE);  // nothing is missing
     EXPECT_EQ(loop->statistics().passes, 0);
     EXPECT_EQ(loop->statistics().bricks_produced, 0U);
     EXPECT_EQ(loop->statistics().bricks_prefetched, ahead);

@@ -1,4 +1,4 @@
-// A camera that stands still: what it will need when it comes nearer is there before it does.
+// A camera that stands still: the bricks that it will need when it moves closer are produced beforehand.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ protected:
     [[nodiscard]] Renderer make(const Settings& options = {}) const {
         return voxel_renderer(scene_, scenes::take_snapshot(scene_), options);
     }
-    /// A pool for what the view needs, and so many more.
+    /// Settings with a pool for the view's bricks and `more` others.
     [[nodiscard]] Settings room_for(std::uint64_t more) const {
         Renderer fresh = make();
         const renderer::Frame frame = fresh.render(view_);
@@ -38,7 +38,7 @@ protected:
         options.pools.brick_bytes = (frame.statistics.bricks_resident + more) * slot_bytes;
         return options;
     }
-    /// @return the bricks that were produced; `calls` counts how often it was asked.
+    /// Prefetches until there is no more. @return the number of bricks; `calls` counts the calls.
     static std::uint64_t prefetch_all(Renderer& renderer, double budget_ms, int& calls) {
         constexpr int most_calls = 20000;
         std::uint64_t bricks = 0;
@@ -84,9 +84,9 @@ TEST_F(PrefetchFiner, StopsWhenThePoolIsFullAndTakesNothingFromTheView) {
     Renderer renderer = make(room_for(more));
     View behind = view_;
     behind.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
-    (void)renderer.render(behind);  // whose bricks may go
+    (void)renderer.render(behind);  // its bricks may be evicted
     optics::Image before;
-    // In bands, as the viewer does it: what any of them used stays.
+    // In bands, as in the viewer: bricks that any band used stay.
     for (int row = 0; row < view_.size.height; row += 24) {
         const renderer::Frame frame =
             renderer.render(view_, {.rows = renderer::Rows{row, 24}, .budget = Milliseconds(1e9)});
@@ -109,7 +109,7 @@ TEST_F(PrefetchFiner, NothingIsProducedWithoutTimeOrForWhatIsFineEnough) {
     (void)renderer.render(view_);
     EXPECT_EQ(renderer.prefetch_finer(Milliseconds(0.0)).bricks, 0U);
     EXPECT_THROW((void)renderer.prefetch_finer(Milliseconds(-1.0)), Error);
-    Renderer coarse = make({.tree = {.max_resolution = 64}});  // whose finest voxels the view shows already
+    Renderer coarse = make({.tree = {.max_resolution = 64}});  // the view shows its finest voxels already
     (void)coarse.render(view_);
     EXPECT_LE(coarse.prefetch_finer(Milliseconds(1e9)).bricks, 1U)
         << "but for the root's, which may stand in";
@@ -143,7 +143,7 @@ TEST_F(PrefetchFiner, ViewerThatStandsStillLooksAheadAndThenRests) {
         viewer.step(now += 1.0);
     EXPECT_EQ(viewer.bricks_produced(), produced) << "it does not rest";
 
-    // Who moves does not wait for it.
+    // A camera that moves does not wait for prefetching.
     viewer.wheel(3.0);
     EXPECT_EQ(viewer.rest(now), 0.0);
     const std::size_t frames = viewer.frame_ms().size();

@@ -1,4 +1,4 @@
-// Depth without limit: a set that repeats itself at every power of two looks the same at every power of two.
+// Depth without limit: a set that repeats itself at every power of two looks the same at all of them.
 
 #include <cmath>
 
@@ -43,7 +43,8 @@ Renderer make_renderer(const Settings& options) {
     return Renderer(renderer::fractal_content(options.tree), options.options());
 }
 
-/// The middle of the root cube, around which the set repeats itself, from `n^-level` of the root cube away.
+/// A view of the middle of the root cube, around which the set repeats itself, from `n^-level` of the root
+/// cube away.
 View zoomed_view(int n, int level) {
     View view;
     view.size.width = 96;
@@ -58,7 +59,7 @@ View zoomed_view(int n, int level) {
 
 struct Difference {
     std::size_t pixels = 0;
-    std::size_t silhouettes = 0;  ///< of `pixels`: shown in one picture only
+    std::size_t silhouettes = 0;  ///< those of `pixels` that only one picture shows
     std::string first;
 };
 
@@ -78,7 +79,7 @@ Difference compare(const optics::Image& a, const optics::Image& b, int threshold
     return out;
 }
 
-/// Neither all background nor of one colour: a picture that two equal empty ones are not.
+/// Checks that a picture is neither all background nor of one colour: two empty pictures would be equal, too.
 void expect_a_picture(const optics::Image& image) {
     std::size_t covered = 0;
     int least = 255;
@@ -96,7 +97,7 @@ void expect_a_picture(const optics::Image& image) {
 class Zoom : public GlTest, public ::testing::WithParamInterface<Depth> {
 protected:
     [[nodiscard]] int bits_a_level() const { return GetParam().n == 4 ? 2 : 1; }
-    /// Shows 2^-40 of the root cube, or just less.
+    /// The level at which a view shows 2^-40 of the root cube, or slightly more.
     [[nodiscard]] int deepest() const { return 40 / bits_a_level(); }
 };
 
@@ -119,7 +120,7 @@ TEST_P(Zoom, SmallStepsOfTheCameraChangeADeepPictureAsAShallowOne) {
     for (int step = 0; step < 6; ++step) {
         auto moved = [&](int level) {
             View view = zoomed_view(GetParam().n, level);
-            // A pixel shows about 2^-7 of the anchor's side.
+            // A pixel is about 2^-7 of the anchor's side wide.
             view.camera.eye += glm::dvec3(1.0, -0.5, 0.25) * (step * 0x1p-11);
             return renderer.render(view).image;
         };

@@ -1,4 +1,4 @@
-// Levels of detail: what mips hold, that nothing pops, and that there are no seams.
+// Levels of detail: the content of mips, and that nothing pops and there are no seams.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -70,13 +70,13 @@ View view_of(const scenes::Scene& scene, int width, int height, LevelOfDetail::K
 
 class LevelOfDetailTest : public GlTest {};
 
-/// The largest mean change of a frame while one pixel's cone grows by `growth` a step, the rays and all else
-/// standing still: what changes is the level of detail alone.
+/// Mean changes of a frame while the pixels' cones grow by `growth` per step and everything else stays the
+/// same: only the level of detail changes.
 struct Jumps {
-    double largest = 0.0;  ///< of a frame's mean change
+    double largest = 0.0;  ///< largest mean change of a step
     int largest_pixel = 0;
     std::string where;
-    double mean = 0.0;  ///< of all steps
+    double mean = 0.0;  ///< mean change of all steps
 };
 
 Jumps jumps_of(Renderer& renderer, View view, int steps) {
@@ -107,7 +107,7 @@ TEST_F(LevelOfDetailTest, NothingPopsWhileTheConeGrowsSixteenfold) {
     const int steps = 200;
     View view = view_of(scene, 96, 72, LevelOfDetail::Kind::blended);
     view.shadow.kind =
-        renderer::ShadowQuality::Kind::none;  // whose edges move with the voxels that cast them
+        renderer::ShadowQuality::Kind::none;  // edges of shadows move with the voxels that cast them
     const Jumps blended = jumps_of(renderer, view, steps);
     view.detail.kind = LevelOfDetail::Kind::nearest;
     const Jumps nearest = jumps_of(renderer, view, steps);
@@ -230,9 +230,8 @@ INSTANTIATE_TEST_SUITE_P(NAndM, BlendedShapes,
                          });
 
 TEST_F(LevelOfDetailTest, BricksOfAllSizesBlendToTheSamePicture) {
-    // The same voxels, cut into tiles of 8, 16 and 32 of them: where one brick ends, and where one level
-    // passes into the next, shows nowhere. N = 2, so that the levels of all three trees have voxels of the
-    // same sizes.
+    // The same voxels, cut into tiles of 8, 16 and 32 voxels: borders of bricks and of levels show nowhere. N
+    // = 2, so that the levels of all three trees have voxels of the same sizes.
     const scenes::Scene scene = ball_over_floor();
     auto render = [&](int m, LevelOfDetail::Kind level_of_detail) {
         View view = view_of(scene, 160, 120, level_of_detail);

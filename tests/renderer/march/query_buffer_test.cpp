@@ -1,4 +1,4 @@
-// How what rays ask is told: the words of queries, in C++ and in GLSL, and the buffer that they are read
+// The queries of rays: their words, encoded in GLSL and decoded in C++, and the buffer that they are read
 // from.
 #include "renderer/march/query_buffer.h"
 
@@ -52,7 +52,7 @@ TEST(QueryWord, KnowsNothingOfTheRaysThatAsk) {
               renderer::query_word({7, QueryKind::brick}, 100));
 }
 
-/// What one ray asks for, and the brick that it has used.
+/// The query of one ray, and the brick that it has used.
 struct Asked {
     std::uint32_t entry = 0;
     std::uint32_t kind = 0;
@@ -85,7 +85,7 @@ protected:
     static constexpr std::uint32_t entries = 500;
     static constexpr int slots = 20;
 
-    /// One pass of such rays.
+    /// A pass of such rays.
     QueryBuffer::Told pass(QueryBuffer& buffer, std::vector<Asked>& asked, Round round, bool is_progressive) {
         gl::Program& program = is_progressive ? progressive_ : patient_;
         if (program.id() == 0) {
@@ -123,7 +123,7 @@ protected:
         return asked;
     }
 
-    /// Rays that ask, by query.
+    /// Number of rays with a query, by query.
     static std::map<std::tuple<std::uint32_t, QueryKind>, std::uint32_t> count(
         const std::vector<Asked>& asked) {
         std::map<std::tuple<std::uint32_t, QueryKind>, std::uint32_t> counts;

@@ -1,5 +1,5 @@
-// How rays tell what they miss: by a list that may have no room, or by blocks of pixels. Whatever is not told
-// must be asked for again, and the picture be the same.
+// How rays report what they miss: in a list that may be full, or by blocks of pixels. A query that is not
+// reported must be repeated, and the picture must be the same.
 #include <algorithm>
 #include <array>
 #include <tuple>
@@ -39,7 +39,7 @@ using renderer::View;
 
 class TileBlocksTest : public GlTest {
 protected:
-    /// The first few different words of a block, those that were missed before those that were used.
+    /// The first few different words of a block: those of missing tiles, then those of used bricks.
     static std::vector<std::uint32_t> first_of(const std::vector<std::uint32_t>& reports,
                                                const glm::ivec2& size, const glm::ivec2& block) {
         std::vector<std::uint32_t> chosen;
@@ -97,7 +97,7 @@ TEST_F(TileBlocksTest, EachBlockKeepsTheFirstFourDifferentTiles) {
     }
 }
 
-// --- which queries are known where there is no room for all ---
+// --- which queries are reported if there is no room for all ---
 
 /// A tree of a surface, a view of it from the front, and answers one at a time.
 struct Scenery {
@@ -128,8 +128,7 @@ struct Scenery {
         marcher.begin_frame(view_, cache_.tree(), cache_.pool(), false);
         return marcher.run_pass(round_, cache_.tree(), cache_.pool());
     }
-    /// Whether it is for a brick, and the level. Those that TileCache::answer() answers first are the
-    /// largest.
+    /// Whether a query is for a brick, and its level. TileCache::answer() answers the greatest first.
     [[nodiscard]] std::tuple<bool, int> urgency(const TileQuery& query) const {
         return {query.kind == QueryKind::brick, cache_.tree().tile(query.entry).level};
     }

@@ -1,4 +1,4 @@
-// What makes rays faster changes no bit of the picture: ways down the tree, late starts, early ends.
+// Traversals, late starts and early ends of rays make them faster, and change no bit of the picture.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -27,7 +27,7 @@ Renderer make_renderer(const scenes::Scene& scene, const Settings& options) {
     return voxel_renderer(scene, scenes::take_snapshot(scene), options);
 }
 
-/// How many pixels differ, and which is the first.
+/// The number of pixels that differ, and the first one.
 std::string difference(const optics::Image& a, const optics::Image& b) {
     std::size_t count = 0;
     std::string first;
@@ -59,8 +59,8 @@ scenes::Scene needles() {
     return triangles(corners);
 }
 
-/// Views that are hard on starts and ends: from inside, along axes through voxel planes, from very far,
-/// through a narrow or a wide lens.
+/// Views that are difficult for starts and ends of rays: from inside, along axes through voxel planes, from
+/// very far, through a narrow or a wide lens.
 std::vector<View> hard_views(const scenes::Scene& scene) {
     const scenes::Bounds bounds = scenes::take_snapshot(scene).bounds;
     const glm::dvec3 middle = 0.5 * (glm::dvec3(bounds.low) + glm::dvec3(bounds.high));
@@ -153,7 +153,7 @@ TEST_P(Shapes, LateStartsAndEarlyEndsChangeNothing) {
         std::size_t seen = 0;
         for (std::size_t i = 0; i < views.size(); ++i) {
             const optics::Image expected = plain.render(views[i]).image;
-            // Cold, then with all that the view shows in the tree, where starts are latest.
+            // With an empty tree, then with all that the view shows in it, where starts are latest.
             EXPECT_EQ(difference(ours.render(views[i]).image, expected), "") << "cold, view " << i;
             EXPECT_EQ(difference(ours.render(views[i]).image, expected), "") << "view " << i;
             for (std::size_t k = 3; k < expected.rgba.size(); k += 4)

@@ -1,4 +1,4 @@
-// Every shape of a tree shows what every other one does.
+// Trees of every shape show the same picture.
 #include <cstdlib>
 
 #include <fmt/format.h>
@@ -18,8 +18,7 @@ using optics::Image;
 using renderer::Renderer;
 using renderer::View;
 
-/// A shape, the resolution it is tried at, and another shape of the same resolution: one dense brick where
-/// that can be.
+/// A shape, its resolution, and another shape of the same resolution: one dense brick if possible.
 struct Pair {
     int n, m, resolution;
     int other_n, other_m;
@@ -33,7 +32,7 @@ Renderer make_renderer(const scenes::Scene& scene, const Settings& options) {
     return voxel_renderer(scene, scenes::take_snapshot(scene), options);
 }
 
-/// Every voxel at the finest level, whatever the distance.
+/// A view that shows every voxel at the finest level, whatever the distance.
 View finest_view(const scenes::Scene& scene) {
     View view;
     view.size.width = 120;
@@ -45,7 +44,7 @@ View finest_view(const scenes::Scene& scene) {
 }
 
 struct Difference {
-    std::size_t pixels_over = 0;  ///< with a channel that differs by more than the threshold
+    std::size_t pixels_over = 0;  ///< pixels that differ in a channel by more than the threshold
     std::string first;
 };
 

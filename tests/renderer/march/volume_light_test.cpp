@@ -1,4 +1,4 @@
-// Light on volumes: gradients for normals, and shadows by what the light loses on its way.
+// Light on volumes: gradients as normals, and shadows by the light that is lost on the way.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -38,7 +38,7 @@ struct LightError {
     int count = 0;
 };
 
-/// How far the picture of a ball around the world's origin is from what Lambert's law says of its normals.
+/// The error of the picture of a ball around the world's origin against Lambert's law.
 LightError light_error(const optics::Image& image, const View& view, double radius, double albedo) {
     LightError error;
     const glm::dvec3 light = glm::normalize(view.light.towards);
@@ -84,7 +84,7 @@ TEST_F(VolumeLight, SmoothBallIsLitAsItsNormalsSay) {
     EXPECT_LT(error.worst, 0.02);
 }
 
-// Where a density falls from 1 to 0 within a voxel, its gradient says less of the normal: the known limit.
+// The known limit: if a density falls from 1 to 0 within a voxel, its gradient is a worse normal.
 TEST_F(VolumeLight, BallWithASharpSideIsLitLessExactly) {
     const auto ball = std::make_shared<renderer::HollowSphere>(4, 256, 0.0, 0.4);
     const TransferFunction opaque({{0.0, glm::dvec3(0.5), 0.0}, {1.0, glm::dvec3(0.5), 500.0}});
@@ -122,7 +122,7 @@ TEST_F(VolumeLight, FogTakesOfTheLightWhatItsThicknessSays) {
     View view;
     view.size.width = 32;
     view.size.height = 24;
-    // Between floor and fog, looking down.
+    // A view from between floor and fog, downwards.
     view.camera = {{32.0, 30.0, 32.0}, {32.0, 8.0, 33.0}, {0, 0, 1}, 0.5};
     view.detail.pixel_error = 1e-6;
     view.light.ambient = 0.0F;
@@ -163,7 +163,7 @@ TEST_F(VolumeLight, WhatIsOpaqueStopsTheLight) {
     EXPECT_GT(lamp.rgba[std::size_t(4 * (6 * 16 + 8))], 128);
 }
 
-/// Looks from between the floor of fog_over_floor() and what hangs over it, straight down.
+/// A view from between the floor of fog_over_floor() and the layer over it, straight down.
 View view_of_the_floor() {
     View view;
     view.size.width = 32;
@@ -176,7 +176,7 @@ View view_of_the_floor() {
     return view;
 }
 
-/// Light that arrives at each pixel of the floor, as a share of what would without a shadow.
+/// The light that arrives at each pixel of the floor, as a share of the light without a shadow.
 std::vector<double> shares_on_the_floor(const scenes::Volume& volume, const TransferFunction& transfer,
                                         View view) {
     const optics::Image shadowed = voxel_renderer(volume, transfer, small_pool).render(view).image;
@@ -210,7 +210,7 @@ TEST_F(VolumeLight, PenumbraOfAnEdgeInAVolumeComesToTheClosedForm) {
         for (int x = 0; x < view.size.width; ++x) {
             const glm::dvec3 direction = pixel_direction(view, x, y);
             const double at = view.camera.eye.x + direction.x * (8.0 - 30.0) / direction.y;
-            // From a point of the floor, what of the light lies left of the plate's two edges is hidden.
+            // From a point of the floor, the part of the light left of the plate's two edges is hidden.
             double hidden = 0.0;
             for (const double height : {40.0, 42.0}) {
                 const double edge = at + (32.0 - at) * (56.0 - 8.0) / (height - 8.0);
@@ -227,7 +227,7 @@ TEST_F(VolumeLight, PenumbraOfAnEdgeInAVolumeComesToTheClosedForm) {
     EXPECT_LT(std::sqrt(squares / double(shares.size())), 0.02);
 }
 
-// Not a bit a ray, but what each has lost on its way.
+// A ray does not count as hidden or not, but by the light that it has lost on its way.
 TEST_F(VolumeLight, SoftLightThroughFogIsTheMeanOfWhatIsLeftOfIt) {
     const double sigma = 0.08;
     const TransferFunction transfer({{0.0, glm::dvec3(1.0), 0.0},

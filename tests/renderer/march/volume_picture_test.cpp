@@ -26,7 +26,7 @@ using renderer::VolumeOptions;
 
 constexpr VolumeOptions fog{.full_gradient = 0.0};
 
-/// Enough for the views here, and quick to make.
+/// A pool that suffices for the views here, and is quick to make.
 constexpr Settings small_pool{.pools = {.brick_bytes = 8U << 20U}};
 
 class VolumePictures : public GlTest {};
@@ -67,8 +67,7 @@ TEST_P(VolumeTrees, PictureFromBricksEqualsTheOneFromADenseTexture) {
     EXPECT_LE(difference.largest, 1) << difference.worst;
 }
 
-// A density that rises evenly is the same at every level, so a seam between levels can be nothing but a
-// fault.
+// A density that rises evenly is the same at every level, so that any seam between levels is a fault.
 TEST_P(VolumeTrees, BordersBetweenLevelsDoNotShow) {
     const auto [n, m] = GetParam();
     scenes::Volume slope = blobs(glm::ivec3(128), 1, 0);
@@ -77,7 +76,7 @@ TEST_P(VolumeTrees, BordersBetweenLevelsDoNotShow) {
         slope.samples[i] =
             std::uint16_t(std::lround(65535.0 * (0.1 + 0.8 * glm::dot(place, {0.3, 0.2, 0.5}) / 127.0)));
     }
-    // Nothing of the sides is seen through so much.
+    // The sides are not visible through so much density.
     const TransferFunction transfer({{0.0, {1.0, 0.0, 0.2}, 4.0}, {1.0, {0.0, 1.0, 0.2}, 5.0}});
     View view = glowing_view(slope.bounds(), 64, 48);
     view.camera = {{-0.1, 0.05, -0.9}, {0.1, 0.0, 1.0}, {0, 1, 0}, 0.5};
@@ -153,7 +152,8 @@ TEST_F(VolumePictures, UniformBallLetsThroughWhatItsChordSays) {
 }
 
 TEST_F(VolumePictures, EightTimesFinerStepsChangeOpacityByLessThanAHundredth) {
-    // A shell as sharp as voxels can be, and smooth blobs; from fog to what lets 4% through a voxel.
+    // A shell as sharp as voxels can be, and smooth blobs; from fog to an extinction that lets 4% through a
+    // voxel.
     const auto shell = std::make_shared<HollowSphere>(4, 64, 0.3, 0.4);
     const auto soft = std::make_shared<DenseField>(blobs(glm::ivec3(64), 4), 4);
     const View view = glowing_view({glm::dvec3(-1.0), glm::dvec3(1.0)}, 96, 72);
@@ -245,7 +245,7 @@ TEST_F(VolumePictures, FramesWithinABudgetEndWithTheWholePicture) {
     EXPECT_EQ(frame.image.rgba, expected.rgba);
 }
 
-// Crassin et al. 2008, section 7: what a view costs does not grow with what is not seen.
+// Crassin et al. 2008, section 7: the cost of a view does not grow with hidden content.
 TEST_F(VolumePictures, BricksOfAViewDoNotGrowWithTheVirtualResolution) {
     const auto tile = std::make_shared<DenseField>(blobs(glm::ivec3(64), 9, 20), 4);
     std::uint64_t expected = 0;

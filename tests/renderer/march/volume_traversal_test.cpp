@@ -1,5 +1,5 @@
-// All traversals of the tree show the same of a volume. A volume has tiles that are not empty and whose
-// children all are: a coarse tile mixes in what lies a coarse voxel outside.
+// All traversals of the tree show the same picture of a volume. A volume has tiles that are not empty while
+// all their children are, because a coarse tile takes in densities up to a coarse voxel outside.
 #include <random>
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
-// The marching loop against a walk in whole numbers: which occupied voxel does a ray meet first?
+// The marching loop against a walk in whole numbers: the first occupied voxel that a ray meets.
 //
-// A ray's steps are in floats, so where the exact ray comes nearer to a voxel's edge than floats can tell, it
-// may take either side. A mismatch is a ray whose first voxel is neither the exact one, nor one that the
-// exact ray comes within `margin` of while it comes no deeper than that into any occupied voxel before it.
-// Both counts are printed.
+// A ray's steps are in floats, so it may take either side if the exact ray is closer to a voxel's edge than
+// floats can resolve. A mismatch is a ray whose first voxel is neither the exact one, nor one that the exact
+// ray comes within `margin` of while it comes no deeper than that into any occupied voxel before it. Both
+// counts are printed.
 //
 // CAIRN_RAY_COUNT in the environment sets how many rays each test takes; the default is a sample.
 
@@ -27,14 +27,14 @@ namespace {
 using renderer::TreeShape;
 
 constexpr int direction_bits = 56;
-constexpr std::size_t batch_rays = 125'000;  // of each kind as many
+constexpr std::size_t batch_rays = 125'000;  // as many of each kind
 
 std::size_t ray_count(std::size_t sample) {
     const char* text = std::getenv("CAIRN_RAY_COUNT");
     return text != nullptr ? std::size_t(std::strtoull(text, nullptr, 10)) : sample;
 }
 
-/// A stream that is the same on every standard library.
+/// Random numbers: the same stream with every standard library.
 class Random {
 public:
     explicit Random(unsigned seed) : engine_(seed) {}
@@ -47,7 +47,7 @@ private:
     std::mt19937 engine_;
 };
 
-/// What the loop takes for 0, because a ray that slow never crosses a plane.
+/// Values that the loop takes for 0, because a ray that slow never crosses a plane.
 constexpr float inert_components[] = {0.0F, -0.0F, 1e-40F, -1e-40F, 1e-21F, -1e-30F};
 
 enum Kind { anywhere, along_an_axis, in_a_plane, diagonal, nearly_along_an_axis, kind_count };
@@ -90,13 +90,13 @@ glm::i64vec3 exact_direction(const glm::vec3& d) {
 
 struct Tally {
     std::size_t rays = 0, hits = 0, second_check = 0, wrong = 0;
-    std::array<std::size_t, kind_count> second_check_of{};  ///< of each Kind
+    std::array<std::size_t, kind_count> second_check_of{};  ///< number per Kind
     std::string first;
 };
 
 enum class Verdict { exact, within_margin, wrong };
 
-/// @param margin  of a voxel's side
+/// @param margin  in units of a voxel's side
 Verdict judge(const std::vector<Space>& spaces, const ExactRay& ray, bool hit, const Crossed& ours,
               long double margin) {
     Verdict verdict = Verdict::exact;
@@ -119,7 +119,7 @@ Verdict judge(const std::vector<Space>& spaces, const ExactRay& ray, bool hit, c
         return true;
     });
     if (decided) return verdict;
-    // The exact ray leaves the set behind.
+    // The exact ray passes the set.
     if (!hit) return verdict;
     return meets_ours_before(std::numeric_limits<long double>::infinity()) ? Verdict::within_margin
                                                                            : Verdict::wrong;

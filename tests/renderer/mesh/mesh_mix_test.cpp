@@ -22,8 +22,8 @@ using renderer::Mix;
 
 class MeshMix : public GlTest {};
 
-/// Where Embree sees the mesh before the voxelized scene by more than two voxels, and nothing of either ends
-/// within two pixels, the picture shows the mesh; and the other way round.
+/// If Embree sees the mesh before the voxelized scene by more than two voxels, and neither ends within two
+/// pixels, the picture shows the mesh; and the other way round.
 void expect_depth_order(const scenes::Scene& scene, const scenes::Scene& mesh, const View& view,
                         int resolution) {
     Renderer renderer = voxels_of(scene, resolution);
@@ -95,9 +95,9 @@ TEST_F(MeshMix, AKnotAndSpheresInterlaced) {
 }
 
 TEST_F(MeshMix, VoxelsCoverAMeshBehindThemAsTheyCoverABackground) {
-    // Silhouettes are translucent: a mesh of one colour behind all must give what that colour as a background
-    // gives. With shadow rays from the voxels and from the mesh behind them, none of which meets anything it
-    // should not.
+    // Silhouettes are translucent: a mesh of one colour behind everything must look like a background of that
+    // colour. With shadow rays from the voxels and from the mesh behind them, which must not meet anything
+    // else.
     const scenes::Scene ball = ball_over_floor();
     const glm::vec3 color(0.1F, 0.5F, 0.3F);
     const scenes::Scene wall =
@@ -265,7 +265,8 @@ TEST_F(MeshMix, ColoursOfAMeshAreThoseOfItsVoxels) {
     EXPECT_LE(others(voxels, mesh, 6), 96 * 96 / 12) << "more than edges differ";
 }
 
-/// A picture with everything: two receivers a pixel, a proxy that cuts, sizes that no block of rays divides.
+/// A picture with everything: two receivers per pixel, a proxy that cuts, sizes that blocks of rays do not
+/// divide.
 struct Everything {
     Everything() : view(flat_view({2.1, 2.4, 4.3}, {0.0, 1.0, 0.0}, 97, 61)) {
         view.shadow.kind = renderer::ShadowQuality::Kind::hard;

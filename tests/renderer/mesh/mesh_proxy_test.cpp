@@ -1,4 +1,4 @@
-// Proxies: meshes that bound where voxels show.
+// Proxies: meshes that bound the space where voxels show.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -66,8 +66,8 @@ TEST_F(MeshProxy, OnlyPixelsOfTheProxyLaunchRays) {
         ASSERT_EQ(image.image.rgba[i], 0) << "pixel " << i / 4;
 }
 
-/// Where a face of the scene lies in the proxy by more than two voxels, something shows; where all lie
-/// outside by more than that, nothing does.
+/// If a face of the scene lies in the proxy by more than two voxels, something shows; if all faces lie
+/// outside by more than that, nothing shows.
 void expect_cut_by(const scenes::Scene& proxy, const View& view, const scenes::Scene& scene, int resolution) {
     Renderer renderer = voxels_of(scene, resolution);
     renderer.set_mix({.proxy = raster(proxy)});

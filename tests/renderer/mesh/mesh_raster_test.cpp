@@ -26,8 +26,8 @@ using renderer::MeshSpan;
 using renderer::MeshSurface;
 using renderer::View;
 
-/// The camera as the marcher gets it: in the units and from the origin of `space`, started `skipped` units
-/// on.
+/// The camera as the marcher gets it: in the units and relative to the origin of `space`, with rays that
+/// start after `skipped` units.
 interop::MarchView march_view(const View& view, const MarchSpace& space, double skipped = 0.0) {
     const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(Eyes, MeshRasterEyes, ::testing::ValuesIn(eyes),
 
 class MeshRasterTest : public GlTest {};
 
-/// Pixels whose nearest distance is not Embree's, and where.
+/// The number of pixels whose nearest distance is not Embree's, and their places.
 struct Disagreement {
     int pixels = 0;
     int covered = 0;
@@ -269,8 +269,7 @@ TEST_F(MeshRasterTest, ANarrowLensFarAwaySeesDistancesFromWhereItsRaysStart) {
 }
 
 TEST_F(MeshRasterTest, RowsDrawnApartAreThoseOfOnePicture) {
-    // So wide that two strips share it: the rows on both sides of their border fit a plane that no strip
-    // knows.
+    // The picture is so wide that two strips share it: the rows on both sides of their border fit one plane.
     const scenes::Scene scene = sheet(glm::vec4(1.0F));
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     View view = view_of({"", {0.2, 1.0, 1.3}, {0.0, 0.0, 0.0}, 0.9}, 16384, 300);

@@ -1,4 +1,4 @@
-// Thousands of random rounds of a tree in pools that are far too small, against what must hold after each.
+// Thousands of random rounds of a tree in pools that are far too small, and the invariants after each round.
 #include <algorithm>
 #include <map>
 
@@ -22,7 +22,7 @@ struct Pools {
 
 class TreeStress : public GlTest, public ::testing::WithParamInterface<Pools> {
 protected:
-    /// A question of a ray, and the tile it was about.
+    /// A query of a ray, and its tile.
     struct Query {
         std::uint32_t entry;
         bool brick;
@@ -36,7 +36,7 @@ protected:
         used_.resize(std::size_t(GetParam().slots), 0);
     }
 
-    /// Rays go down at random, use the bricks they meet, and ask where they end.
+    /// Rays go down at random, use the bricks that they meet, and query where they end.
     std::vector<Query> ask() {
         std::vector<Query> queries;
         for (int ray = 0; ray < 12; ++ray) {
@@ -92,7 +92,7 @@ protected:
         learn_owners();
     }
 
-    /// Which bricks are resident, by the entries that are reached.
+    /// The resident bricks, by the entries that are reached.
     void learn_owners() {
         owners_.clear();
         for (const std::uint32_t entry : walk(*tree_, GetParam().slots).entries) {
@@ -142,13 +142,13 @@ protected:
         check();
     }
 
-    static constexpr std::uint32_t orphan = 0xFFFFFFFFU;  ///< in place of an entry
+    static constexpr std::uint32_t orphan = 0xFFFFFFFFU;  ///< stands for an entry that is gone
     Random random_{20240607};
     std::optional<Tree> tree_;
     std::uint32_t round_ = 1;
-    std::vector<std::uint32_t> used_;      ///< the last round that used or filled each slot
+    std::vector<std::uint32_t> used_;      ///< last round that used or filled each slot
     std::map<int, std::uint32_t> owners_;  ///< entry of each resident brick
-    std::vector<Query> this_round_;        ///< granted in this round
+    std::vector<Query> this_round_;        ///< queries answered in this round
     std::uint64_t blocks_added_ = 0;
     std::uint64_t bricks_added_ = 0;
     std::uint64_t refused_ = 0;

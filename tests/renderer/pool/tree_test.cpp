@@ -1,4 +1,4 @@
-// The N^3-tree's mirror and its caches: who is taken away, and who never is.
+// The N^3-tree's mirror and its caches: which bricks and blocks are evicted, and which never are.
 #include "renderer/pool/tree.h"
 
 #include <set>
@@ -98,7 +98,7 @@ protected:
     [[nodiscard]] Round round() const { return {round_}; }
     [[nodiscard]] Reached reached() const { return walk(*tree_, slots_); }
 
-    /// The pass that ends used these slots.
+    /// Ends a pass that used these slots.
     void next_round(const std::vector<int>& used_slots = {}) {
         std::vector<std::uint32_t> stamps(std::size_t(slots_), 0);
         for (const int slot : used_slots)
@@ -173,7 +173,7 @@ TEST_F(TreeTest, SlotUnusedForLongestIsTakenFirst) {
     for (std::uint32_t child = 0; child < 4; ++child)
         slots[child] = brick(first + child);
     next_round();
-    // Used in three passes, one each; the fourth never since its production.
+    // Three slots are used in three passes, one each; the fourth is never used after its production.
     next_round({slots[2]});
     next_round({slots[0]});
     next_round({slots[3]});
@@ -231,7 +231,7 @@ TEST_F(TreeTest, UsedBrickRenewsThePathToTheRoot) {
     EXPECT_EQ(reached().blocks, 6);
     for (int round = 0; round < 3; ++round)
         next_round({used_brick});
-    // Two more blocks: the branch that no ray used goes, its deepest block first.
+    // Two more blocks: the branch that no ray used is evicted, its deepest block first.
     (void)children(top + 2);
     EXPECT_EQ(tree().node(unused).children, 0U);
     EXPECT_NE(tree().node(top + 1).children, 0U) << "the parent went before it had to";
@@ -300,7 +300,7 @@ TEST_F(TreeTest, BrickIsLinkedAgainWhenItsTileComesBack) {
     next_round();
     (void)children(top + 4);
     ASSERT_EQ(tree().orphans().size(), 2U);
-    // The older of the two gives way; the other is there when its tile is asked for again.
+    // The older of the two is evicted; the other is there when its tile is queried again.
     EXPECT_EQ(brick(top), other);
     EXPECT_EQ(tree().counters().bricks_evicted, 1U);
     next_round();
@@ -335,7 +335,7 @@ TEST_F(TreeTest, SlotIsGivenOutOnceInARoundHoweverOldItsBrickCounts) {
     tree().keep_since(round());
     EXPECT_TRUE(tree().add_brick(top, false).has_value());
     EXPECT_TRUE(tree().add_brick(top + 1, false).has_value());
-    // Both wait for what fills them. One that is needed now must not be put in the same place.
+    // Both slots wait to be filled. A brick that is needed now must not get one of them.
     EXPECT_FALSE(tree().add_brick(top + 2).has_value());
     EXPECT_TRUE(tree().slot(top).has_value());
     EXPECT_TRUE(tree().slot(top + 1).has_value());

@@ -1,4 +1,4 @@
-// What the mips of a brick hold: the same as a brick with voxels of their size, bit for bit.
+// The mips of a brick are the same as a brick with voxels of their size, bit for bit.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ using namespace cairn::test;
 
 /// One mip of a slot, read as the marcher sees it.
 struct ProducedMip {
-    int side = 0;  ///< border included
+    int side = 0;  ///< voxels per side, border included
     std::vector<std::uint32_t> color;
     std::vector<std::uint32_t> normal;
     std::vector<bool> occupied;  ///< by the masks, without the border

@@ -1,5 +1,5 @@
-// Tiles that hold one value keep no brick, and tiles that nothing finer adds to are not subdivided
-// (Crassin et al. 2008, sections 4.2 and 6.1); the picture is the same as if they did and were.
+// Tiles with one value have no brick, and tiles to which nothing finer adds are not subdivided (Crassin et
+// al. 2008, sections 4.2 and 6.1). The picture is the same as with bricks and subdivisions.
 #include <cmath>
 #include <cstdlib>
 
@@ -67,7 +67,7 @@ glm::dvec3 direction_of(const View& view, int x, int y) {
     return glm::normalize(forward + px * right - py * up);
 }
 
-/// How long a ray is in the cube [low, high]^3 of the world; below 0: it passes beside it.
+/// The length of a ray in the cube [low, high]^3 of the world; negative if it passes beside the cube.
 double length_in_cube(const View& view, const glm::dvec3& direction, double low, double high) {
     const glm::dvec3 a = (low - view.camera.eye) / direction;
     const glm::dvec3 b = (high - view.camera.eye) / direction;
@@ -115,7 +115,7 @@ TEST_P(ConstantTiles, HaveTheColourOfTheirMean) {
     for (int y = 0; y < view.size.height; ++y) {
         for (int x = 0; x < view.size.width; ++x) {
             const glm::dvec3 direction = direction_of(view, x, y);
-            // 64 voxels of 2 * 2 / 255 cover all: nothing of the floor is seen.
+            // 64 voxels of 2 * 2 / 255 are opaque together: the floor is not visible.
             if (length_in_cube(view, direction, margin, 1.0 - margin) < 66.0 * voxel) continue;
             const std::size_t pixel = std::size_t(y * view.size.width + x) * 4;
             // Without normals the fog faces the viewer; bricks around the constant tiles hold rounded ones,
@@ -195,7 +195,7 @@ TEST_P(ConstantTiles, TilesOfLowFrequencyAreShownAsTheyAreAtEveryDistance) {
     int deepest_low = 0;
     int deepest_high = 0;
     for (const renderer::Tile& tile : fresh.content->produced()) {
-        // Of the tile of level 1 that it is in: those alone are called final.
+        // Tiles of level 1 alone are final.
         const std::int64_t above =
             tile.position.x / std::max(shape.tiles_across(std::max(tile.level - 1, 0)), 1);
         int& deepest = tile.level >= 1 && above < shape.n / 2 ? deepest_low : deepest_high;

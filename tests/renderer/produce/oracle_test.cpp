@@ -75,7 +75,7 @@ TEST_P(SurfaceOracleTest, MaskIsWhatADirectVoxelizationOfTheChildrenSays) {
 }
 
 TEST_P(SurfaceOracleTest, TileIsEmptyExactlyWhenAllItsChildrenAre) {
-    // Across the levels where one pyramid ends and the next begins.
+    // The levels include those where one pyramid ends and the next begins.
     const TreeShape shape = make_tree_shape(GetParam().n, 16, GetParam().max_resolution);
     const voxelizer::Surface surface = random_surface(23);
     const voxelizer::GpuSurface uploaded = upload(surface);

@@ -1,4 +1,4 @@
-// Colours, normals and coverage of produced bricks, on sheets where they can be told by hand.
+// Colours, normals and coverage of produced bricks, on sheets where they can be predicted by hand.
 #include <cmath>
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ using namespace cairn::test;
 const glm::vec3 red(1.0F, 0.0F, 0.0F);
 const glm::vec3 blue(0.0F, 0.0F, 1.0F);
 
-/// Sheets parallel to the floor in a grid of 8^3 voxels, the root's own brick; lengths in voxels.
+/// Sheets parallel to the floor in a grid of 8^3 voxels, which is the root's brick. Lengths are in voxels.
 class Sheets {
 public:
     Sheets() {

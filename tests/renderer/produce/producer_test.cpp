@@ -1,4 +1,4 @@
-// Produced bricks against the exact reference, against their neighbours, and against colours told by hand.
+// Produced bricks against the exact reference, their neighbours, and colours that are predicted by hand.
 #include <cmath>
 #include <map>
 
@@ -149,7 +149,7 @@ TEST_P(SurfaceProducerTest, NeighboursAgreeOnTheTexelsTheyShare) {
 
 TEST_P(SurfaceProducerTest, TileHasTheSameTexelsAloneAndAmongHundreds) {
     const voxelizer::Surface surface = random_surface(200, GetParam().has_color, 44);
-    // More than go to the GPU at once.
+    // More tiles than are sent to the GPU at once.
     const int count = GetParam().m == 8 ? 1000 : GetParam().m == 16 ? 200 : 60;
     Random random(45);
     std::vector<Tile> tiles;
@@ -159,14 +159,14 @@ TEST_P(SurfaceProducerTest, TileHasTheSameTexelsAloneAndAmongHundreds) {
     BrickMaker maker(shape(), surface, count * 5 / 4);
     ASSERT_GE(maker.pool().slot_count(), count);
     const std::vector<ProducedBrick> together = maker.produce(tiles);
-    // All into the first slot, one after the other: it must be written whole.
+    // All bricks go to the first slot in turn: it must be written completely.
     for (std::size_t i = 0; i < tiles.size(); i += tiles.size() / 12)
         EXPECT_TRUE(maker.produce_one(tiles[i]) == together[i]) << "seeds 44 and 45, " << to_string(tiles[i]);
 }
 
 TEST_P(SurfaceProducerTest, EmptyTileClearsWhatTheSlotHeld) {
     voxelizer::Surface surface = random_surface(50, GetParam().has_color, 46);
-    // Everything into the lower half.
+    // All triangles are in the lower half.
     for (auto& p : surface.chunks[0].positions)
         p[1] = p[1] / 4;
     BrickMaker maker(shape(), surface, 1);

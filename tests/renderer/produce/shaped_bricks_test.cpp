@@ -1,5 +1,5 @@
-// Bricks and masks of trees whose tiles are no cells of the bitmask pyramid (N = 3), or whose nodes have more
-// children than their masks have bits (N = 8).
+// Bricks and masks of trees whose tiles are not cells of the bitmask pyramid (N = 3), or whose nodes have
+// more children than their masks have bits (N = 8).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ std::string to_string(const Tile& tile) {
                        tile.position.z);
 }
 
-/// In and around the tree's root cube, many with corners on planes of its voxels.
+/// Triangles in and around the tree's root cube, many with corners on planes of its voxels.
 std::vector<LatticeTriangle> random_triangles(const TreeShape& shape, int count, std::uint32_t seed) {
     Random random(seed);
     const std::int64_t root = std::int64_t(shape.m) * shape.voxel_side(0);
@@ -210,7 +210,7 @@ TEST_P(ShapedTrees, OracleNeverCallsATileEmptyThatIsNot) {
     EXPECT_LT(told, 4 * held) << "of " << children;
 }
 
-const Shape one_brick{3, 27, 27};  // the root alone
+const Shape one_brick{3, 27, 27};  // only the root
 const auto thirds =
     ::testing::Values(Shape{3, 27, 2187}, Shape{3, 27, 1 << MAX_RESOLUTION_BITS}, Shape{3, 81, 6561});
 const auto eighths =

@@ -1,5 +1,5 @@
 // Menger's sponge as a content (renderer/produce/fractal_content.h): its closed form against its definition,
-// its bricks against the closed form, its picture against what can be told by hand.
+// its bricks against the closed form, and its picture against areas that are known by hand.
 #include <cmath>
 #include <set>
 #include <tuple>
@@ -20,7 +20,7 @@ using renderer::Tile;
 
 using Cubes = std::set<std::tuple<std::int64_t, std::int64_t, std::int64_t>>;
 
-/// As it is defined: of each cube the middle ones of the faces and of the whole are taken away.
+/// The definition: the middle cubes of each cube's faces and of its inside are removed.
 Cubes cut_out(int level) {
     if (level == 0) return {{0, 0, 0}};
     Cubes cubes;
@@ -117,7 +117,7 @@ TEST_F(GlTest, TheSpongeHasHolesThatShowTheBackground) {
     view.camera.target = {0.5, 0.5, 0.5};
     view.camera.yfov = 2.0 * std::atan(0.5 / 2.0);
     const optics::Image image = sponge.render(view).image;
-    auto alpha = [&](double x, double y) {  // of a place of the front
+    auto alpha = [&](double x, double y) {  // opacity at a place of the front
         const auto column = std::size_t(x * 91.0);
         const auto row = std::size_t((1.0 - y) * 91.0);
         return int(image.rgba[4 * (row * 91 + column) + 3]);

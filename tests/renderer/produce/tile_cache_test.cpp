@@ -1,4 +1,4 @@
-// The tile cache alone: it answers queries that no ray has asked.
+// The tile cache alone, with queries that tests make.
 #include "renderer/produce/tile_cache.h"
 
 #include <chrono>
@@ -34,7 +34,7 @@ protected:
         const renderer::BrickPool sample(shape(), true, 1U << 20U);
         return std::size_t(slots) * (sample.size_bytes() / std::size_t(sample.slot_count()));
     }
-    /// Without the means of constant tiles.
+    /// Bytes of node blocks, without the means of constant tiles.
     static std::size_t bytes_of_blocks(int blocks) {
         return std::size_t(blocks) * std::size_t(shape().child_count()) * sizeof(interop::NodeEntry);
     }
@@ -126,7 +126,7 @@ TEST_F(TileCacheTest, TellsOnlyTheEntriesThatGotChildren) {
     EXPECT_EQ(answer.parents, (std::vector{level2[1], level1[2]}));
     EXPECT_EQ(answer.bricks, 1U);
     EXPECT_EQ(cache.counters().tile_queries, 3U + queries.size());
-    // What was made in this round has not been asked for by its rays.
+    // Rays of this round have not queried what was produced in it.
     const TileQuery newborn{cache.tree().node(level1[2]).children, QueryKind::children};
     EXPECT_EQ(cache.answer({&newborn, 1}).count(), 0U);
 }
@@ -148,8 +148,8 @@ TEST_F(TileCacheTest, BricksComeFirstAndThenTheDeepestNodes) {
         const std::vector<std::uint32_t> one = children_of(level1[0]);
         const std::vector<std::uint32_t> inner = children_of(one[0]);
         const std::vector<std::uint32_t> other = children_of(level1[1]);
-        // What leads to a brick stays. Of the rest, only the block of `inner` can go when rays are in
-        // `other`.
+        // Nodes that lead to a brick stay. Of the others, only the block of `inner` can be evicted if rays
+        // are in `other`.
         const Round kept = round();
         EXPECT_EQ(cache.answer(for_bricks({one[1]})).bricks, 1U);
         next_round();

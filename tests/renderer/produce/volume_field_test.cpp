@@ -1,4 +1,4 @@
-// What fills bricks of volumes, and what says that tiles are empty: means, bounds, masks.
+// Means, which fill bricks of volumes, and bounds and masks, by which tiles are empty.
 #include <memory>
 #include <random>
 
@@ -64,7 +64,7 @@ TEST(VolumeFields, RangeHoldsEveryVoxelOfEveryCoarsenessInItsBox) {
                     (voxel + std::int64_t(1)) * side + glm::i64vec3(more(), more(), more());
                 const FieldRange range = named.field->range(low, high);
                 const float value = value_at(*named.field, coarseness, voxel);
-                const float rounded = 1.0F / 65535.0F;  // what a level stores
+                const float rounded = 1.0F / 65535.0F;  // precision of a level
                 ASSERT_GE(value, range.low - rounded) << named.name << ", seed 22, n " << n << ", turn " << i;
                 ASSERT_LE(value, range.high + rounded)
                     << named.name << ", seed 22, n " << n << ", turn " << i;
@@ -127,12 +127,12 @@ TEST(VolumeFields, ShapeHoldsTheFieldOrIsCutOffAtTheLimit) {
 
 class VolumeBricks : public GlTest {};
 
-/// Nothing shows under that one of the 255 steps of density.
+/// Densities below this one of the 255 steps do not show.
 TransferFunction visible_from(int density) {
     return TransferFunction({{(density - 1) / 255.0, glm::dvec3(1.0), 0.0}, {1.0, glm::dvec3(1.0), 1.0}});
 }
 
-/// Does any voxel of the tile's brick have its mask bit set?
+/// Whether the mask bit of any voxel of the tile's brick is set.
 bool shows(const Tile& tile, VolumeContent& content, const BrickPool& pool) {
     const BrickRequest request{tile, 0};
     (void)content.producer().produce({&request, 1}, pool);
@@ -158,7 +158,7 @@ TEST_F(VolumeBricks, OfTilesThatTheOracleCallsEmptyAreEmptyAtAllLevelsBelow) {
                 bool said_empty = false;
                 while (tile.level < shape.tree.max_level) {
                     const glm::uvec2 mask = content.oracle().child_mask(tile);
-                    // Every other way down goes where something may be.
+                    // Every second path goes down where something may be.
                     const auto may_show = [&mask](int c) { return (mask[c / 32] >> (c % 32) & 1U) != 0; };
                     int child = int(random.between(0, shape.tree.child_count() - 1));
                     for (int turn = 0; i % 2 == 0 && !may_show(child) && turn < 1000; ++turn)

@@ -28,12 +28,15 @@ using voxelizer::BitGrid;
 
 constexpr unsigned group_size = 64;
 
-/// A ray, and the occupied voxel that it meets after so many others.
+/// A ray, and the occupied voxel that it meets after skipping some.
 struct Probe {
     glm::vec4 origin_start{0.0F};
-    glm::vec4 direction_end{0.0F, 0.0F, 0.0F, 1e30F};  ///< any length
-    glm::ivec4 voxel_skipped{-1, -1, -1, 0};           ///< found: xyz, -1 = none; w: skipped before
-    glm::vec4 found{0.0F};                             ///< x: distance of the way's middle; y: turns
+    /// xyz: direction, of any length; w: end of the ray.
+    glm::vec4 direction_end{0.0F, 0.0F, 0.0F, 1e30F};
+    /// xyz: voxel that is found, -1 if none; w: number of voxels to skip.
+    glm::ivec4 voxel_skipped{-1, -1, -1, 0};
+    /// x: distance of the middle of the way through the voxel; y: turns of the loop.
+    glm::vec4 found{0.0F};
 };
 
 constexpr const char* probe_shader = R"(
@@ -171,7 +174,8 @@ Probe dyadic_probe(int side, Dice& dice) {
     return probe;
 }
 
-/// The voxel that a dyadic ray finds, in whole numbers: times in 1/256. It starts past the planes at 0.
+/// The voxel that a dyadic ray finds, in whole numbers, with times in 1/256. The ray starts past the planes
+/// at 0.
 glm::i64vec3 walk_exactly(const Columns& columns, const Probe& probe) {
     const std::int64_t never = std::int64_t(1) << 60;
     glm::i64vec3 voxel(0);
@@ -275,7 +279,7 @@ TEST_F(ColumnRays, FindTheVoxelsOfAWalkInWholeNumbers) {
     }
 }
 
-/// Any ray: from inside, from outside, nearly along an axis, with denormal components.
+/// A random ray: from inside, from outside, nearly along an axis, with denormal components.
 Probe free_probe(int side, Dice& dice) {
     Probe probe;
     const float far = dice.below(4) == 0 ? 3.0F * float(side) : 0.0F;
@@ -293,7 +297,7 @@ Probe free_probe(int side, Dice& dice) {
     return probe;
 }
 
-/// The part of a ray in a box, as distances; first > last: none.
+/// The part of a ray in a box, as distances; empty if first > last.
 std::pair<double, double> part_in(const Probe& probe, const glm::dvec3& low, const glm::dvec3& high) {
     double first = probe.origin_start.w;
     double last = probe.direction_end.w;
@@ -312,8 +316,8 @@ std::pair<double, double> part_in(const Probe& probe, const glm::dvec3& low, con
     return {first, last};
 }
 
-/// By a walk in double over all occupied voxels that rounding cannot have hidden: those that the ray meets
-/// further inside than `margin`. When it must have met one, and where.
+/// The distance before which a ray must have met a voxel, by a walk in double over all occupied voxels that
+/// rounding cannot have hidden: those that the ray meets further inside than `margin`.
 double must_meet_before(const Columns& columns, const Probe& probe, double margin) {
     const double side = columns.bits().size.y;
     auto [t, end] = part_in(probe, glm::dvec3(0.0), glm::dvec3(side));
@@ -388,7 +392,7 @@ TEST_F(ColumnRays, AdaptiveMasksTakeFewerTurns) {
     EXPECT_LT(turns[1], 0.7 * turns[0]) << "adaptive, mip level";
 }
 
-/// A full grid with a tunnel along a ray, no wider than rounding asks for.
+/// A full grid with a tunnel along a ray, no wider than rounding requires.
 BitGrid tunnel(int side, const glm::dvec3& origin, const glm::dvec3& direction) {
     constexpr double step = 0x1p-6;
     BitGrid bits((glm::ivec3(side)));
@@ -408,7 +412,7 @@ BitGrid tunnel(int side, const glm::dvec3& origin, const glm::dvec3& direction) 
 }
 
 TEST_F(ColumnRays, TurnTheirLoopsSeldomEnoughThatNoDriverEndsThem) {
-    // The limit that COLUMN_MOST_LEVELS stands on. In a tunnel every node that a ray crosses is refined.
+    // COLUMN_MOST_LEVELS depends on this limit: in a tunnel every node that a ray crosses is refined.
     constexpr int side = 256;
     for (const glm::dvec3 direction : {glm::dvec3(1.0, 0.97, 0.93), glm::dvec3(0.03, 1.0, 0.99),
                                        glm::dvec3(1.0, 0.02, 0.01), glm::dvec3(0.5, 1.0, 0.25)}) {

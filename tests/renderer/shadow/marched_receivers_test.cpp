@@ -1,4 +1,4 @@
-// What of the light reaches voxels that primary rays found, against hard shadows by Embree.
+// The share of the light that reaches voxels that primary rays found, against hard shadows by Embree.
 
 #include <cmath>
 #include <string>
@@ -21,7 +21,7 @@ namespace {
 using renderer::Renderer;
 using renderer::View;
 
-/// Of the triangles of a snapshot, as ReferenceImage::primitive counts them.
+/// Normals of the triangles of a snapshot, in the order of ReferenceImage::primitive.
 std::vector<glm::dvec3> plane_normals(const scenes::Snapshot& snapshot) {
     std::vector<glm::dvec3> normals;
     for (const scenes::Item& item : snapshot.items) {
@@ -39,8 +39,8 @@ std::vector<glm::dvec3> plane_normals(const scenes::Snapshot& snapshot) {
     return normals;
 }
 
-/// Of the pixels where both see something and the triangle faces the light, by more than the interpolated
-/// normals of these scenes differ from it.
+/// Figures of the pixels where both see something and the triangle faces the light by more than the
+/// interpolated normals of these scenes differ from the triangle's.
 struct Disagreement {
     int receivers = 0;
     int too_light = 0;

@@ -1,4 +1,4 @@
-// Pictures with shadow rays through the xy-reduced pyramid, of scenes that stand and that move.
+// Pictures with shadow rays through the xy-reduced pyramid, of scenes at rest and in motion.
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ scenes::When moment(double seconds) {
 const renderer::ShadowRequest only_image = {.light = false};
 const renderer::ShadowRequest only_light = {.image = false};
 
-/// @param snapshot  at the moment.
+/// @param snapshot  the scene at the moment.
 renderer::ShadowScene moving_scene(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                                    const scenes::When& when, const scenes::Bounds& bounds) {
     return {.scene = scene, .snapshot = snapshot, .motion = renderer::ShadowMotion{when, bounds}};
@@ -150,7 +150,7 @@ TEST_F(PyramidPictures, AreAsNearToEmbreeAsThoseOfTheTree) {
                                    ours.disagreement(), theirs.disagreement(), ours.rmse(), theirs.rmse()));
         EXPECT_GT(ours.shadowed, 200U);
         EXPECT_LT(ours.disagreement(), theirs.disagreement() + 0.002) << rays << " rays";
-        // Bits do not tell where in a voxel its surface is, as the tree's voxels do.
+        // Bits have no place of the surface within a voxel, which the tree's voxels have.
         EXPECT_LT(ours.rmse(), 1.25 * theirs.rmse()) << rays << " rays";
         EXPECT_LT(ours.disagreement(), 0.02) << rays << " rays";
     }
@@ -211,7 +211,7 @@ TEST_F(PyramidPictures, WhatCannotBeIsRefused) {
         ASSERT_EQ(share, -1.0F);
 }
 
-/// What stays resident of this process, in MiB.
+/// The resident memory of this process, in MiB.
 double resident_mib() {
     std::ifstream statm("/proc/self/statm");
     double total = 0.0;
@@ -220,8 +220,8 @@ double resident_mib() {
     return resident * double(sysconf(_SC_PAGESIZE)) / 0x1p20;
 }
 
-/// Moves through the times, and compares with renderers made at each.
-/// @return  frames unlike the one before
+/// Moves through the times, and compares with renderers that are made at each time.
+/// @return  number of frames that differ from the one before
 int expect_fresh_frames(const scenes::Scene& scene, const scenes::Bounds& bounds,
                         const std::vector<double>& times) {
     const View view = view_of(bounds, 80, 60, 4);
@@ -284,7 +284,7 @@ TEST_F(PyramidPictures, MovingTakesNoMoreMemoryFromFrameToFrame) {
     const double before = resident_mib();
     for (int i = 0; i < 40; ++i)
         frame(i);
-    // One pyramid forgotten a frame would be 100 MiB.
+    // One pyramid that leaks per frame would be 100 MiB.
     EXPECT_LT(resident_mib(), before + 16.0);
     moving.move_to(0.0);
     const renderer::ShadowTimes times = moving.render(view).times;

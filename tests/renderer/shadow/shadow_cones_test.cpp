@@ -1,4 +1,4 @@
-// Shadow rays that are cones, and many rays a pixel.
+// Shadow rays that are cones, and many rays per pixel.
 
 #include <cmath>
 #include <numeric>
@@ -123,7 +123,8 @@ TEST_F(ShadowCones, EveryKindOfTreeTakesThem) {
     }
 }
 
-// Turns of 8 threads side by side count together: a driver that ends their loops must not be brought to it.
+// Turns of the loops of 8 threads side by side count together. They must stay below the limit at which a
+// driver ends loops.
 TEST_F(ShadowCones, ManyRaysAreAllCounted) {
     SquareOverFloorScene scene(64);
     double before = 1.0;

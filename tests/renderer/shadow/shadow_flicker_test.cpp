@@ -1,4 +1,4 @@
-// Soft shadows stay calm while the light moves slowly: the samples' pattern stands still on the picture.
+// Soft shadows do not flicker while the light moves slowly: the samples' pattern stands still in the picture.
 
 #include <cmath>
 #include <vector>
@@ -14,8 +14,8 @@ namespace {
 
 class ShadowFlicker : public GlTest {};
 
-/// The root of the mean square, over the pixels in penumbra and all frames, of what the share of the light
-/// changes by from one frame to the next, past what the truth changes by.
+/// The root of the mean square, over the pixels in penumbra and all frames, of the change of the light's
+/// share from one frame to the next, less the change of the truth.
 double flicker(SquareOverFloorScene& scene, int rays, bool cones) {
     constexpr int frames = 6;
     const glm::dvec2 step =

@@ -26,7 +26,7 @@ using optics::LightShares;
 using renderer::Renderer;
 using renderer::View;
 
-constexpr double square_half = 0.5;  // it lies at height 1
+constexpr double square_half = 0.5;  // the square is at height 1
 constexpr double light_height = 3.0;
 constexpr double light_half = 0.4;
 
@@ -58,8 +58,8 @@ public:
         return view;
     }
 
-    /// What is seen of the rectangle past the square: the square's projection on the light's plane is one
-    /// too.
+    /// The share of the rectangle that is seen past the square. The square's projection on the light's plane
+    /// is a square, too.
     [[nodiscard]] double truth(int x, int y) const {
         const glm::dvec3 direction = rays_.direction({x + 0.5, y + 0.5});
         const glm::dvec3 point = rays_.eye - direction * (rays_.eye.y / direction.y);
@@ -88,7 +88,7 @@ class ShadowRays : public GlTest {};
 TEST_F(ShadowRays, PenumbraOfASquareComesToTheClosedForm) {
     SquareOverFloor scene;
     double before = 1.0;
-    // The samples' error falls until the voxels' own, about their size on the floor, is left.
+    // The error of samples falls until the error of voxels is left, about their size on the floor.
     for (const auto& [rays, limit] : {std::pair{4, 0.14}, {16, 0.04}, {64, 0.013}, {256, 0.008}}) {
         View view = SquareOverFloor::view();
         view.shadow = {.kind = renderer::ShadowQuality::Kind::rays, .samples = rays};
@@ -143,7 +143,7 @@ TEST_F(ShadowRays, PenumbraIsSymmetric) {
 }
 
 TEST_F(ShadowRays, ALightIsHalfSeenWhereItsMiddleTouchesAnEdge) {
-    // The hard shadow's edge is where half of any light with a point symmetry is seen past a straight edge.
+    // The hard shadow's edge is where half of any point-symmetric light is seen past a straight edge.
     SquareOverFloor scene;
     View view = SquareOverFloor::view();
     view.light.shape = optics::LightShape::disk;
@@ -213,7 +213,7 @@ TEST_F(ShadowRays, PictureDoesNotDependOnThePoolsNorOnRowsNorOnFramesBefore) {
 }
 
 TEST_F(ShadowRays, HundredsOfLongRaysPauseAndComeToAnEnd) {
-    // With 512 rays a pixel a thread would turn its loops more often than a pass lets it.
+    // With 512 rays per pixel a thread would turn its loops more often than a pass allows.
     View view = knot_view(512);
     view.size.width = 16;
     view.size.height = 12;

@@ -1,4 +1,4 @@
-// All methods of shadows by their one face: the same scene, moments that move, and what a method cannot do.
+// All methods of shadows through ShadowRenderer: one scene, moving moments, and the limits of each method.
 
 #include "renderer/shadow_renderer.h"
 
@@ -93,7 +93,7 @@ TEST_F(ShadowRenderers, AllAreNearTheSameTruth) {
     }
 }
 
-// The parts of a picture do not depend on what else is asked for, nor on what was shown before.
+// The parts of a picture do not depend on the other parts of the request, nor on pictures before.
 TEST_F(ShadowRenderers, PartsAreThoseOfTheWhole) {
     const Ball ball;
     const View view = view_under(light_above(3.0, 0.3, 0.3));

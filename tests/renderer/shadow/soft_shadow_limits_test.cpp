@@ -1,6 +1,7 @@
-// Where soft shadow maps fail, or might, beside what tests/renderer/shadow/soft_shadow_map_test.cpp has (a
-// tiny light, contact of a box, an occluder through the light, FP16, walls of a box): each test asserts what
-// soft_shadow_map.h and optics/light.h say of it.
+// Cases in which soft shadow maps fail, or might, besides those of
+// tests/renderer/shadow/soft_shadow_map_test.cpp (a tiny light, contact of a box, an occluder through the
+// light, FP16, walls of a box). Each test asserts what soft_shadow_map.h and optics/light.h say about its
+// case.
 
 #include <algorithm>
 #include <array>
@@ -56,7 +57,7 @@ std::vector<double> rays_find(const ShadowScene& scene, const SoftShadowMap& map
     return rays_find(scene, map.light(), points);
 }
 
-/// Upright, through the light's axis.
+/// An upright sheet through the light's axis.
 Corners upright(double half_thickness) {
     Corners one = quad({half_thickness, 0.3, -0.6}, {half_thickness, 0.3, 0.6}, {half_thickness, 1.3, 0.6},
                        {half_thickness, 1.3, -0.6});
@@ -85,7 +86,7 @@ TEST_F(SoftShadowLimits, ASheetSeenEdgeOnHidesNothing) {
     EXPECT_LT(*std::min_element(visible.begin(), visible.end()), 0.7F);
 }
 
-// A sheet without thickness that faces the light hides all of it, from straight under it.
+// A sheet without thickness that faces the light hides all of it from points straight under the sheet.
 TEST_F(SoftShadowLimits, AThinSheetLetsNoLightThrough) {
     const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.8, 0.3), floor_of_4);
     const SoftShadowMap map = shadow_of(scene, light_above(3.0, 0.2, 0.2), sizes(100, 64));
@@ -98,7 +99,7 @@ TEST_F(SoftShadowLimits, AThinSheetLetsNoLightThrough) {
     EXPECT_GT(under, 300);
 }
 
-// Between two sheets: of what stands behind it the light knows nothing, bit for bit.
+// A light between two sheets: the sheet behind it changes nothing, bit for bit.
 TEST_F(SoftShadowLimits, LightAmongTheOccluders) {
     const Corners below = square({0.1, 1.0, -0.1}, 0.4, 0.2);
     Corners both = below;
@@ -132,7 +133,7 @@ TEST_F(SoftShadowLimits, AnOccluderAtTheLightIsCutAtTheNearDistance) {
     }
 }
 
-// The documented limit: what lies in the receiver itself hides nothing; lifted by little, it hides all.
+// The documented limit: an occluder in the plane of the receiver hides nothing; slightly above, it hides all.
 TEST_F(SoftShadowLimits, AnOccluderInTheReceiversPlaneHidesNothing) {
     const Light light = light_above(3.0, 0.2, 0.2);
     for (const double lift : {0.0, 1e-3, 1e-2}) {
@@ -152,7 +153,7 @@ TEST_F(SoftShadowLimits, AnOccluderInTheReceiversPlaneHidesNothing) {
 // and count as lit. The rest is near the truth, however low the light.
 TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
     const ShadowScene scene(box({-0.2, 0.0, -0.2}, {0.2, 0.5, 0.2}), square({0.0, 0.0, 0.0}, 6.0));
-    // Along the floor: half of it lies behind the light.
+    // The light looks along the floor: half of the floor lies behind it.
     const Light light = optics::aimed_light({2.0, 0.3, 0.1}, {0.0, 0.3, 0.1}, 0.2, 0.2);
     const ShadowFrustum frustum = fit_shadow_frustum(light, scene.occluders, scene.receivers);
     EXPECT_LE(std::max(std::abs(frustum.receivers.low.y), std::abs(frustum.receivers.high.y)),
@@ -184,7 +185,7 @@ TEST_F(SoftShadowLimits, LightThatGrazesTheFloor) {
     EXPECT_GT(behind, 1000);
 }
 
-/// From under the ball: of all that is in the scene, the floor is the furthest.
+/// A view from under the ball, in which the floor is the furthest thing.
 renderer::View from_under_the_ball() {
     renderer::View view;
     view.size = {80, 80};
@@ -193,8 +194,8 @@ renderer::View from_under_the_ball() {
     return view;
 }
 
-// Depths are floats, and with the eye among the things the near plane is very near: what is furthest must not
-// be rounded past the far one.
+// Depths are floats, and if the eye is among the things the near plane is very near: the furthest thing must
+// not be rounded past the far plane.
 TEST_F(SoftShadowLimits, AnEyeAmongTheOccludersSeesTheFurthestReceiver) {
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 2), floor_of_4);
     renderer::MapShadows pictures(thing_over_floor(scene));
@@ -204,7 +205,7 @@ TEST_F(SoftShadowLimits, AnEyeAmongTheOccludersSeesTheFurthestReceiver) {
         ASSERT_GE(visible, 0.0F) << "the floor is not there";
 }
 
-// One map has one light; what two give is what their maps give, added up.
+// One map has one light; two lights are the sum of two maps.
 TEST_F(SoftShadowLimits, MoreThanOneLight) {
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.4, 4), floor_of_4);
     renderer::View view = from_under_the_ball();

@@ -53,7 +53,7 @@ std::vector<double> exact_past(const std::vector<ReceiverPoint>& points, const s
     return truth;
 }
 
-/// By Embree, to a standard error of 0.004.
+/// The visible shares by Embree, to a standard error of 0.004.
 std::vector<double> sampled(const ShadowScene& scene, const Light& light,
                             const std::vector<ReceiverPoint>& points) {
     const reference::ImageTracer tracer(scene.scene, scene.occluders);
@@ -105,7 +105,7 @@ void expect_depths(const renderer::ShadowMapValues& map, const renderer::ShadowW
     EXPECT_GT(hits, map.values.size() / 3);
 }
 
-// The maps are what rays from the light's centre meet, first and last.
+// The maps hold the first and the last hits of rays from the light's centre.
 TEST_F(SoftShadow, DepthMapsAreWhatTheLightsCentreSees) {
     const ShadowScene scene(ball({0.2, 1.0, -0.1}, 0.6, 3), floor_of_4);
     const Light light = optics::aimed_light({1.0, 3.5, 0.7}, {0.1, 0.9, 0.0}, 0.5, 0.3);
@@ -229,7 +229,7 @@ TEST_F(SoftShadow, ErrorFallsWithTheSizeOfTheOccluderMap) {
     }
 }
 
-// A light of a millionth of the scene: lit or dark, as the ray to its centre tells.
+// A light of a millionth of the scene: points are lit or dark, as by the ray to its centre.
 TEST_F(SoftShadow, TinyLightGivesTheHardShadow) {
     const Corners occluder = square({0.1, 1.0, -0.2}, 0.5);
     const ShadowScene scene(occluder, floor_of_4);
@@ -261,7 +261,7 @@ OneAndTwo errors_of_passes(const ShadowScene& scene, const Light& light) {
     return {error_of(receiver_points(one), truth), error_of(receiver_points(two), truth)};
 }
 
-// Of a thick occluder the closest faces hide too little from a receiver aside (section 3.5).
+// The closest faces of a thick occluder hide too little from a receiver aside (section 3.5).
 TEST_F(SoftShadow, TwoPassesBeatOneForAThickOccluder) {
     const Light above = optics::aimed_light({0.0, 3.0, 0.0}, {0.0, 0.4, 0.0}, 0.6, 0.6);
     const Light aside = optics::aimed_light({1.5, 2.6, 0.4}, {0.0, 0.4, 0.0}, 0.6, 0.6);
@@ -295,7 +295,7 @@ TEST_F(SoftShadow, TwoPassesOfASheetAreOnePass) {
               shadow_of(scene, light, sizes(50, 40, ShadowPasses::two)).visible().values);
 }
 
-// Against rays, for a curved occluder: what Atty et al. (figure 17) call a few percent.
+// Against rays, for a curved occluder: the error is a few percent, as in Atty et al. (figure 17).
 TEST_F(SoftShadow, BallIsNearTheTruth) {
     const ShadowScene scene(ball({0.0, 0.8, 0.0}, 0.5, 4), floor_of_4);
     const Light light = optics::aimed_light({0.5, 3.0, 0.3}, {0.0, 0.5, 0.0}, 0.6, 0.6);
@@ -306,7 +306,7 @@ TEST_F(SoftShadow, BallIsNearTheTruth) {
     EXPECT_GT(error.shadowed, 500U);
 }
 
-/// How far a format is off FP32, in the worst texel.
+/// The difference of a format from FP32 in the worst texel.
 double deviation(const ShadowScene& scene, const Light& light, int size, ShadowFormat format,
                  std::uint64_t* batches = nullptr) {
     const SoftShadowMap exact = shadow_of(scene, light, sizes(size, 32));
@@ -351,7 +351,7 @@ TEST_F(SoftShadow, IsTheSameBitForBitEveryTime) {
     SoftShadowMap map(options);
     map.compute(light, frustum, occluders, receivers);
     const std::vector<float> first = map.visible().values;
-    map.compute(light_above(2.5, 0.1, 0.9), frustum, receivers, occluders);  // what another map leaves behind
+    map.compute(light_above(2.5, 0.1, 0.9), frustum, receivers, occluders);  // leaves other values behind
     map.compute(light, frustum, occluders, receivers);
     EXPECT_EQ(first, map.visible().values);
 }
@@ -390,7 +390,7 @@ TEST_F(SoftShadow, FarFromTheOriginIsAsNear) {
     EXPECT_LT(greatest, 0.01);
 }
 
-// Of the first map of a context too, when the driver has drawn nothing before.
+// The times of the first map of a context, too, before which the driver has drawn nothing.
 TEST_F(SoftShadow, TellsItsTime) {
     const ShadowScene scene(square({0.0, 1.0, 0.0}, 0.5), floor_of_4);
     const renderer::SoftShadowStatistics statistics =

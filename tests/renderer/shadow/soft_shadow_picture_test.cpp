@@ -1,4 +1,4 @@
-// The projection of the soft shadow map onto the scene: what each pixel of a picture takes from it.
+// The projection of the soft shadow map onto the scene: the value of the map that each pixel takes.
 
 #include <algorithm>
 #include <cmath>
@@ -44,10 +44,10 @@ View view_of(const Light& light) {
     return view;
 }
 
-/// What Embree sees through the same pixels, and of the light from there.
+/// The points that Embree sees through the same pixels, and the share of the light there.
 struct Truth {
     reference::ReferenceImage image;
-    std::vector<double> visible;  ///< 1 where there is nothing
+    std::vector<double> visible;  ///< share of the light; 1 if there is no point
 };
 
 dvec3 direction_of(const View& view, int x, int y) {
@@ -217,7 +217,7 @@ TEST_F(SoftShadowPictures, RefusesNodesThatAreBothAndPicturesThatAreNone) {
     EXPECT_TRUE(refused([&] { (void)shadows.render(view); }));
 }
 
-// What was set before a picture is set after it.
+// OpenGL's state is the same before and after a picture.
 TEST_F(SoftShadowPictures, LeaveTheDrawStateAlone) {
     const ShadowScene scene(square({0.0, 0.8, 0.0}, 0.4), square({0.0, 0.0, 0.0}, 1.5));
     glEnable(GL_CULL_FACE);

@@ -1,5 +1,5 @@
-// Where shadow rays through voxels fail, or might: each test asserts what renderer.h says of it, at
-// View::shadow. Lengths are in voxels where nothing else is said.
+// Cases in which shadow rays through voxels fail, or might. Each test asserts what renderer.h says about its
+// case at View::shadow. Lengths are in voxels unless stated otherwise.
 
 #include <algorithm>
 #include <array>
@@ -32,9 +32,9 @@ using renderer::Renderer;
 using renderer::View;
 using Corners = std::vector<vec3>;
 
-constexpr int picture_size = 112;  // pixels a side
+constexpr int picture_size = 112;  // pixels per side
 
-/// Looks straight down on the floor y = 0, so that a pixel is a point of it.
+/// A view straight down on the floor y = 0, so that a pixel is a point of the floor.
 View from_above() {
     View view;
     view.size.width = view.size.height = picture_size;
@@ -91,7 +91,7 @@ void each(const optics::LightShares& found, const View& view,
                   found.shares[std::size_t(y) * std::size_t(view.size.width) + std::size_t(x)]);
 }
 
-constexpr int resolution = 64;  // so four bricks an axis
+constexpr int resolution = 64;  // four bricks per axis
 
 /// Voxels that shadow a floor that is a mesh of its own.
 class VoxelsOverFloor {
@@ -113,7 +113,7 @@ public:
     void each_pixel(const View& view, const std::function<void(const dvec3&, double)>& judge) {
         each(shares(view), view, judge);
     }
-    /// What the floor sees of the view's light past the triangles, pixel by pixel.
+    /// The share of the view's light that the floor sees past the triangles, per pixel.
     [[nodiscard]] std::vector<double> truth(const View& view) const {
         std::vector<dvec3> points;
         for (int y = 0; y < view.size.height; ++y)
@@ -229,7 +229,7 @@ TEST_F(VoxelShadowLimits, LightThatTouchesItsCeilingIsHidden) {
     EXPECT_EQ(sum_at(-1.5), 0.0) << "on the other side";
 }
 
-// A ball of light that touches a sheet from below is seen, but for what lies within that voxel and a half;
+// A ball of light that touches a sheet from below is seen, except for the part within that voxel and a half;
 // and a square light's corner under the edge of a sheet that reaches past it is hidden where it is.
 TEST_F(VoxelShadowLimits, LightThatTouchesItsOccluder) {
     VoxelsOverFloor scene(level(0.5F, 2.0F));
@@ -265,7 +265,7 @@ TEST_F(VoxelShadowLimits, OccluderThatTouchesTheReceiver) {
     }
 }
 
-/// A floor and what stands on it, both voxelized; the floor is seen as voxels, or as its triangles.
+/// A floor and an object on it, both voxelized. The floor is seen as voxels or as triangles.
 class Standing {
 public:
     Standing(const Corners& thing, bool as_mesh)
@@ -283,8 +283,8 @@ public:
     }
 
     [[nodiscard]] double voxel() const { return voxel_; }
-    /// Each pixel that shows the floor, but for its last voxels: its point, share, and whether it is in
-    /// shadow.
+    /// Visits each pixel that shows the floor, except for the floor's last voxels: its point, share, and
+    /// whether it is in shadow.
     void each_of_floor(const View& view, const std::function<void(const dvec3&, double, bool)>& judge) {
         each(renderer_.light(view).light, view, [&](const dvec3& p, double share) {
             if (std::max(std::abs(p.x), std::abs(p.z)) > 1.4 || blocked(p, view.camera.eye - p)) return;
@@ -295,7 +295,7 @@ public:
         const dvec3 from = point + dvec3(0.0, 1e-4, 0.0);
         return tracer_.blocked(from, from + 8.0 * glm::normalize(way));
     }
-    /// Shadow all around, a voxel away.
+    /// Whether all points a voxel away are in shadow.
     [[nodiscard]] bool deep(const dvec3& point, const dvec3& way) const {
         for (int k = 0; k < 8; ++k) {
             const double angle = k * 0.7853981633974483;
@@ -341,7 +341,7 @@ TEST_F(VoxelShadowLimits, ContactOfABoxLeaksThreeVoxelsAtMost) {
     }
 }
 
-constexpr double foot_of_voxels = 4.0;  // the header's figures too
+constexpr double foot_of_voxels = 4.0;  // the header's figures
 constexpr double foot_of_meshes = 2.5;
 
 /// The fence is a sheet that stands on the floor. Where the light meets it less than `foot` voxels over the
@@ -354,14 +354,14 @@ struct Fence {
         const dvec3 up(0.0, height, 0.0);
         return quad(vec3(left), vec3(right), vec3(right + up), vec3(left + up));
     }
-    /// How high the ray from a point of the floor meets its plane.
+    /// The height at which the ray from a point of the floor meets the fence's plane.
     [[nodiscard]] double crossing(const dvec3& point, const dvec3& way) const {
         const dvec3 normal = glm::cross(right - left, dvec3(0.0, 1.0, 0.0));
         return way.y * glm::dot(normal, left - point) / glm::dot(normal, way);
     }
 };
 
-/// The highest crossing, in voxels, that light went through; and how many were dark.
+/// The highest crossing, in voxels, that light went through, and the number of dark crossings.
 std::pair<double, int> leak_of_fence(bool as_mesh, const dvec3& towards) {
     const Fence fence;
     Standing scene(fence.corners(), as_mesh);
