@@ -8,13 +8,11 @@ set(cairn_public_headers
   base/error.h
   gl/buffer.h
   gl/context.h
-  gl/debug.h
   gl/handle.h
   gl/shader_source.h
   optics/camera.h
   optics/image.h
   optics/light.h
-  reference/area_light.h
   reference/exact_voxels.h
   reference/image.h
   reference/shadow_truth.h
@@ -42,14 +40,11 @@ set(cairn_public_headers
   renderer/shadow/shadow_options.h
   renderer/shadow_renderer.h
   renderer/view/view.h
-  scenes/builtin/builtin.h
   scenes/load.h
-  scenes/node_selection.h
   scenes/scene.h
   scenes/snapshot.h
   scenes/volume/volume.h
   voxelizer/bit_grid.h
-  voxelizer/files/voxel_files.h
   voxelizer/files/voxel_writer.h
   voxelizer/grid.h
   voxelizer/methods/voxelize_tiles.h

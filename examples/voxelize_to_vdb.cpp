@@ -8,7 +8,7 @@
 #include <cairn/gl/context.h>
 #include <cairn/scenes/load.h>
 #include <cairn/scenes/snapshot.h>
-#include <cairn/voxelizer/files/voxel_files.h>
+#include <cairn/voxelizer/files/voxel_writer.h>
 #include <cairn/voxelizer/methods/voxelize_tiles.h>
 
 namespace voxelizer = cairn::voxelizer;

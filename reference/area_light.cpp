@@ -1,5 +1,3 @@
-#include "reference/area_light.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include "base/error.h"
+#include "reference/shadow_truth.h"
 
 namespace cairn::reference {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <glm/glm.hpp>
 
-#include "reference/area_light.h"
+#include "reference/shadow_truth.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 

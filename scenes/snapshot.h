@@ -1,8 +1,8 @@
 #pragma once
-
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -70,8 +70,7 @@ struct Snapshot {
 /// Evaluates animation, morph targets and skins at one moment. The scene must outlive the snapshot.
 ///
 /// @throws Error  Fault::usage if the animation or the scene index does not exist; Fault::input if a
-/// transform
-///                gives a vertex that is not finite.
+///                transform gives a vertex that is not finite.
 [[nodiscard]] Snapshot take_snapshot(const Scene& scene, const When& when = {});
 
 /// The animation that a moment names; null if it names none.
@@ -88,5 +87,20 @@ struct Snapshot {
 /// vertex may swing a little out of the bounds; grid_around leaves a voxel for that.
 /// @throws Error  as take_snapshot and frame_times do.
 [[nodiscard]] Bounds bounds_over_animation(const Scene& scene, const When& when, double frames_per_second);
+
+/// One flag per node of Scene::nodes.
+using NodeSelection = std::vector<bool>;
+
+/// The nodes that `wanted` names, with their descendants. A text that is a name selects all nodes of that
+/// name; else a whole number is an index into Scene::nodes.
+/// @throws Error  Fault::usage if a text is neither; the way out lists the nodes.
+[[nodiscard]] NodeSelection select_nodes(const Scene& scene, std::span<const std::string> wanted);
+
+/// All nodes that are not selected.
+[[nodiscard]] NodeSelection other_nodes(const NodeSelection& selection);
+
+/// The items of the selected nodes, with their bounds and counts, without lights and cameras. The whole
+/// snapshot must outlive the part, whose items point into the same vertices.
+[[nodiscard]] Snapshot part_of(const Snapshot& whole, const NodeSelection& selection);
 
 }  // namespace cairn::scenes

@@ -6,7 +6,6 @@
 
 #include "optics/image.h"
 #include "renderer/view/view.h"
-#include "scenes/node_selection.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 

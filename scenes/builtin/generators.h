@@ -7,7 +7,7 @@
 
 #include "scenes/scene.h"
 
-/// The generators of builtin.h, one per file, and the steps that they share.
+/// The generators behind make_builtin(), one per file, and the few steps that they share.
 namespace cairn::scenes {
 
 enum class Leaves { triangles, masked_cards };

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "renderer/pool/brick_cache.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"

@@ -14,7 +14,7 @@
 #include "renderer/produce/surface_content.h"
 #include "renderer/produce/tile_cache.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "shaders/interop/march.h"
 #include "shaders/interop/tile_query.h"

@@ -7,7 +7,7 @@
 #include "reference/image.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "shaders/interop/mesh.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_mix_pictures.h"

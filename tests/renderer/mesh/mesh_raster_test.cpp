@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "reference/image.h"
-#include "scenes/builtin/builtin.h"
 #include "scenes/load.h"
 #include "shaders/interop/march.h"
 #include "shaders/interop/mesh.h"

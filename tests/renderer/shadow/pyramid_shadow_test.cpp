@@ -17,7 +17,6 @@
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
 #include "renderer/shadow/pyramid_shadows.h"
-#include "scenes/builtin/builtin.h"
 #include "scenes/ground.h"
 #include "scenes/load.h"
 #include "tests/support/gl_fixture.h"

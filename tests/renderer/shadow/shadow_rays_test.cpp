@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_rays.h"
 #include "tests/support/test_scenes.h"

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "reference/area_light.h"
 #include "reference/image.h"
+#include "reference/shadow_truth.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/renderer.h"
 #include "tests/support/gl_fixture.h"
