@@ -18,26 +18,13 @@ set(cairn_public_headers
   reference/shadow_truth.h
   renderer/frame/frame_statistics.h
   renderer/march/march_options.h
-  renderer/march/tile_queries.h
-  renderer/march/traversal.h
-  renderer/mesh/mix.h
   renderer/open_content.h
-  renderer/pool/brick_pool.h
-  renderer/pool/pool_sizes.h
-  renderer/pool/tree_options.h
   renderer/pool/tree_shape.h
   renderer/produce/content.h
-  renderer/produce/content_program.h
   renderer/produce/cpu_brick.h
-  renderer/produce/oracle.h
-  renderer/produce/producer.h
-  renderer/produce/transfer_function.h
-  renderer/produce/volume_field.h
+  renderer/produce/volume.h
   renderer/renderer.h
-  renderer/renderer_options.h
-  renderer/shadow/column_mask.h
   renderer/shadow/shadow_base.h
-  renderer/shadow/shadow_options.h
   renderer/shadow_renderer.h
   renderer/view/view.h
   scenes/load.h

@@ -11,7 +11,7 @@
 #include <cairn/base/error.h>
 #include <cairn/gl/context.h>
 #include <cairn/optics/camera.h>
-#include <cairn/renderer/pool/tree_options.h>
+#include <cairn/renderer/pool/tree_shape.h>
 #include <cairn/renderer/produce/content.h>
 #include <cairn/renderer/produce/cpu_brick.h>
 #include <cairn/renderer/renderer.h>
@@ -90,9 +90,9 @@ public:
     }
 
     // The producer.
-    std::vector<renderer::Produced> produce(std::span<const renderer::BrickRequest> requests,
-                                            const renderer::BrickPool& pool) override {
-        std::vector<renderer::Produced> all;
+    std::vector<renderer::ProducedTile> produce(std::span<const renderer::BrickRequest> requests,
+                                                const renderer::BrickPool& pool) override {
+        std::vector<renderer::ProducedTile> all;
         for (const auto& [tile, slot] : requests) {
             const renderer::CpuBrick brick = make_brick(tile);
             brick.send_to(pool, slot);

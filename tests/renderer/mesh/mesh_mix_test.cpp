@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "reference/image.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/renderer.h"
 #include "scenes/load.h"
 #include "shaders/interop/mesh.h"

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "reference/shadow_truth.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/renderer.h"
 #include "renderer/shadow/pyramid_shadows.h"
 #include "scenes/ground.h"

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/renderer.h"
 #include "scenes/load.h"
 #include "tests/support/gl_fixture.h"

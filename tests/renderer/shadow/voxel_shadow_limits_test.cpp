@@ -13,6 +13,7 @@
 #include "reference/image.h"
 #include "reference/shadow_truth.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/renderer.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_rays.h"
