@@ -19,9 +19,8 @@ public:
 
     /// @param name  what the buffer holds, for the text of an error.
     /// @throws Error  Fault::memory if the driver refuses the size. A driver may accept a buffer that is
-    /// larger
-    ///                than what a shader can see of it: compare the size with `Limits::shader_storage_bytes`
-    ///                first.
+    ///                larger than what a shader can see of it: compare the size with
+    ///                `Limits::shader_storage_bytes` first.
     Buffer(std::size_t size_bytes, const std::string& name);
 
     /// A buffer that holds a copy of `data`; at least 16 bytes long, so that it can always be bound.

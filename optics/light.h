@@ -58,8 +58,7 @@ struct Light {
 /// Lengths stay world units.
 ///
 /// @throws Error  Fault::usage if the light is not a rectangle, a half axis has no length, or the half axes
-/// are
-///                not at a right angle.
+///                are not at a right angle.
 [[nodiscard]] glm::dmat4 light_from_world(const Light& light);
 
 /// Half the width and half the height of a rectangle, world units.

@@ -58,7 +58,7 @@ std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, 
     glBindTextureUnit(TEXTURE_MESH_SURFACE, receivers.surface);
     glm::uvec4 counts(1);
     for (last_passes_ = 0; counts.x != 0; ++last_passes_) {
-        // Each pass ends a ray at least of every pixel.
+        // Each pass ends at least one ray of every pixel.
         if (last_passes_ > MAX_SHADOW_RAYS)
             throw Error(Fault::internal, "shadow rays", "a ray did not come to an end");
         counts_.fill(0);

@@ -9,7 +9,7 @@
 
 // Bits of a column that one fetch reads.
 #define COLUMN_TEXEL_BITS 128
-// The bits of a column that are tested: enum ColumnMask of renderer/shadow/column_mask.h.
+// The bits of a column that are tested: enum ColumnMask of renderer/shadow/shadow_base.h.
 #define COLUMN_MASK_MIP_LEVEL 0
 #define COLUMN_MASK_ADAPTIVE 1
 // Limits of log2 of the voxels per side. A ray turns its loops fewer than 12 times per voxel of a side. These

@@ -29,7 +29,7 @@
 // The two normals of a voxel show how far its surface bends; the bend is taken to be at least this.
 #define VOXEL_SILHOUETTE_BEND 0.1
 
-// The ways in which a ray finds its next tile: enum Traversal of renderer/march/traversal.h.
+// The ways in which a ray finds its next tile: enum Traversal of renderer/march/march_options.h.
 #define TRAVERSAL_RESTART 0
 #define TRAVERSAL_STACKLESS 1
 #define TRAVERSAL_MINI_STACK 2

@@ -22,8 +22,7 @@ namespace cairn::voxelizer {
 /// Memory: one tile, 32 bytes per tile that holds voxels, and a ColorPalette. A temporary file holds 6 bytes
 /// per voxel.
 /// @throws Error  Fault::usage, from add(), if the file would pass 2 GiB (about 500 million voxels), where
-/// the format's
-///                sizes end.
+///                the format's sizes end.
 [[nodiscard]] std::unique_ptr<VoxelWriter> make_vox_writer(const std::filesystem::path& path,
                                                            const Grid& grid);
 

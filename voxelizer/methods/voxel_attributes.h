@@ -32,8 +32,7 @@ public:
 
     /// @param surface  built with SurfaceOptions::attributes
     /// @param bits     bits of the region. An occupied voxel that no triangle of the surface touches (inside
-    /// a
-    ///                 solid) gets colour and normal 0.
+    ///                 a solid) gets colour and normal 0.
     /// @param subset   as in Voxelizer::voxelize
     /// @throws Error   Fault::memory if the bits pass the driver's shader-storage limit: then gather tile by
     /// tile.

@@ -49,12 +49,10 @@ public:
 
     /// The voxels of a region.
     /// @param subset  global numbers of the triangles to mark; none: all. It must hold every triangle that
-    /// meets
-    ///                the region; further ones only cost time. Far triangles are always marked.
+    ///                meets the region; further ones only cost time. Far triangles are always marked.
     /// @throws Error  Fault::memory if the region's bits pass the driver's shader-storage limit: the message
-    /// says
-    ///                what would fit. Fault::usage if the region has more than
-    ///                voxel_region_side voxels along an axis.
+    ///                says what would fit. Fault::usage if the region has more than voxel_region_side voxels
+    ///                along an axis.
     [[nodiscard]] BitGrid voxelize(const GpuSurface& surface, const Region& region,
                                    std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 

@@ -94,8 +94,7 @@ struct SurfaceOptions {
 };
 
 /// @throws Error  Fault::memory if the surface would not fit in memory; Fault::input if a vertex lies past
-/// the
-///                lattice's limits.
+///                the lattice's limits.
 [[nodiscard]] Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                                     const Grid& grid, const SurfaceOptions& options = {});
 
