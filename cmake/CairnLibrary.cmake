@@ -5,9 +5,16 @@
 # alone, as <cairn/voxelizer/grid.h>, from a build tree and from an installed prefix alike (cmake/PublicHeaders.cmake).
 #
 # cairn_options(TARGET): what every target of the project compiles with.
+#
+# cairn_compile_alone(FILES): sources that a unity build does not join with their neighbours, because both have a name of
+# their own, in an unnamed namespace, that is spelled alike.
 function(cairn_options target)
   target_include_directories(${target} BEFORE PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+  if(CMAKE_UNITY_BUILD)
+    # Of one source, another's unnamed namespace is global, and outside the main file. A build without unity warns of both.
+    target_compile_options(${target} PRIVATE -Wno-shadow $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
   # gcc 12 takes the copy within std::string's operator+ for one that overlaps (gcc bug 105329).
   target_compile_options(${target} PRIVATE $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>)
   # The lattice of the voxelizer is defined by IEEE operations done one by one: a fused multiply-add rounds otherwise.
@@ -23,6 +30,10 @@ function(cairn_options target)
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
   cairn_sanitize(${target})
+endfunction()
+
+function(cairn_compile_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 function(cairn_sanitize target)

@@ -11,11 +11,11 @@
 #include "shaders/interop/mesh.h"
 #include "shaders/interop/pool.h"
 #include "shaders/interop/shadow_rays.h"
+#include "shaders/interop/threads.h"
 
 namespace cairn::renderer {
 namespace {
 
-constexpr unsigned group_size = 64;
 /// The most passes in a row in which rays only pause: a ray crosses fewer than 8 cells per voxel across the
 /// root cube. With windows, it crosses that many per window.
 constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
@@ -223,7 +223,7 @@ void Marcher::dispatch(const Dispatch& work, Round round, const BrickPool& pool,
     program.set("pool_levels", pool.levels());
     set_mix(program);
     program.use();
-    gl::dispatch_threads(work.rays, group_size);
+    gl::dispatch_threads(work.rays, THREADS_PER_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

@@ -16,12 +16,11 @@
 #include "shaders/interop/grid.h"
 #include "shaders/interop/mesh.h"
 #include "shaders/interop/surface.h"
+#include "shaders/interop/threads.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::renderer {
 namespace {
-
-constexpr unsigned group_size = 64;
 
 /// What distinguishes the programs that draw a mesh.
 struct MeshVariant {
@@ -188,7 +187,7 @@ void MeshRaster::Impl::place(std::size_t chunk, unsigned first, unsigned count) 
     place_triangles.use();
     // Fragments of the batch before may still read what this overwrites.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    gl::dispatch_threads(count, group_size);
+    gl::dispatch_threads(count, THREADS_PER_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     placed_of = std::pair(chunk, first);
 }

@@ -4,12 +4,12 @@
 
 #include "renderer/pool/brick_pool.h"
 #include "shaders/interop/produce.h"
+#include "shaders/interop/threads.h"
 
 namespace cairn::renderer {
 namespace {
 
 constexpr std::size_t batch = 1024;
-constexpr unsigned group_size = 64;
 
 bool is_occupied(const Tile& tile, const TreeShape& shape) {
     return shape.n == 3 ? sponge::occupied(tile.position, tile.level)
@@ -79,7 +79,7 @@ std::vector<ProducedTile> FractalProducer::produce(std::span<const BrickRequest>
         auto dispatch = [&](const gl::Program& program, std::size_t threads) {
             program.use();
             program.set("tile_count", unsigned(count));
-            gl::dispatch_threads(threads, group_size);
+            gl::dispatch_threads(threads, THREADS_PER_GROUP);
         };
         dispatch(texels_, count * side * side * side);
         dispatch(masks_, count * words);

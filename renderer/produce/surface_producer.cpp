@@ -6,6 +6,7 @@
 #include "renderer/pool/brick_pool.h"
 #include "renderer/produce/tile_lists.h"
 #include "shaders/interop/surface.h"
+#include "shaders/interop/threads.h"
 
 namespace cairn::renderer {
 namespace {
@@ -17,8 +18,6 @@ constexpr std::size_t pair_capacity = std::size_t(1) << 18U;
 /// share, because no thread may turn its loops too often (docs/decisions/house_and_scenes.md). A voxel takes
 /// one turn itself, 16 for its rows, and 64 more for an alpha mask.
 constexpr int turns_per_pair = 30000;
-constexpr unsigned group_size = 64;
-
 /// Voxels of all mips of a brick, border included.
 std::size_t voxels_per_brick(const TreeShape& shape) {
     std::size_t voxels = 0;
@@ -133,7 +132,7 @@ void SurfaceProducer::splat(std::size_t chunk) {
         const std::size_t count = std::min(pair_capacity, pairs.size() - i);
         pair_buffer_.write(0, &pairs[i], count * sizeof(interop::BrickPair));
         splat_.set("pair_count", unsigned(count));
-        gl::dispatch_threads(count, group_size);
+        gl::dispatch_threads(count, THREADS_PER_GROUP);
     }
 }
 
@@ -171,7 +170,7 @@ void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
         program.use();
         program.set("tile_count", count);
-        gl::dispatch_threads(threads, group_size);
+        gl::dispatch_threads(threads, THREADS_PER_GROUP);
     };
     for (int mip = 0; mip <= shape_.mips; ++mip) {
         masks_.set("mip", mip);

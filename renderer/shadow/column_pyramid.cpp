@@ -11,11 +11,11 @@
 #include "base/error.h"
 #include "gl/limits.h"
 #include "shaders/interop/columns.h"
+#include "shaders/interop/threads.h"
 
 namespace cairn::renderer {
 namespace {
 
-constexpr unsigned group_size = 64;
 constexpr std::size_t texel_bytes = COLUMN_TEXEL_BITS / 8;
 
 int levels_of(int resolution) {
@@ -92,7 +92,7 @@ void ColumnPyramid::build(const gl::Buffer& bits) {
     for (int level = 1; level <= levels_; ++level) {
         halve_.set("level", level);
         halve_.use();
-        gl::dispatch_threads(texels_of_level(levels_, level), group_size);
+        gl::dispatch_threads(texels_of_level(levels_, level), THREADS_PER_GROUP);
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     }
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -8,11 +8,10 @@
 #include "shaders/interop/columns.h"
 #include "shaders/interop/mesh.h"
 #include "shaders/interop/shadow_rays.h"
+#include "shaders/interop/threads.h"
 
 namespace cairn::renderer {
 namespace {
-
-constexpr unsigned group_size = 64;
 
 static_assert(int(ColumnMask::mip_level) == COLUMN_MASK_MIP_LEVEL &&
               int(ColumnMask::adaptive) == COLUMN_MASK_ADAPTIVE);
@@ -64,7 +63,7 @@ std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, 
         counts_.fill(0);
         lighting.set("first_pass", int(last_passes_ == 0));
         lighting.use();
-        gl::dispatch_threads(pixels, group_size);
+        gl::dispatch_threads(pixels, THREADS_PER_GROUP);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
         counts_.read(0, &counts, sizeof(counts));
     }

@@ -68,23 +68,34 @@ std::vector<ShaderVariants> of_charts() {
     return {{"bench/saturate.comp.glsl", sets}, {"bench/test_box.frag.glsl"}, {"bench/test_box.vert.glsl"}};
 }
 
+/// The text of an entry point with what it includes, without the definitions: these stand before the first
+/// #line. It does not depend on their values, so one set stands for all. Every process of these tests lists
+/// all cases, which is why a text is resolved once here.
+std::string body_of(const ShaderVariants& entry) {
+    if (entry.defines.empty()) return "";
+    const std::string text = ShaderSource().resolve(entry.name, entry.defines.front()).text;
+    return text.substr(text.find("#line"));
+}
+
 /// All sets, by entry point. Sets that differ only in macros that the text does not name count as one.
 std::map<std::string, std::vector<Defines>> all_variants() {
     std::map<std::string, std::vector<Defines>> all;
     for (const auto& list : {voxelizer::shader_variants(), renderer::shader_variants(), of_charts()}) {
         for (const ShaderVariants& entry : list) {
-            std::set<std::string> texts;
+            const std::string body = body_of(entry);
+            std::map<std::string, bool> names;
+            std::set<std::string> keys;
             for (const Defines& defines : entry.defines) {
-                const std::string text = ShaderSource().resolve(entry.name, defines).text;
-                const std::string body = text.substr(text.find("#line"));
                 Defines named;
                 std::string key;
                 for (const auto& define : defines) {
-                    if (body.find(define.first) == std::string::npos) continue;
+                    const auto [name, is_new] = names.try_emplace(define.first);
+                    if (is_new) name->second = body.find(define.first) != std::string::npos;
+                    if (!name->second) continue;
                     named.push_back(define);
                     key += define.first + "=" + define.second + " ";
                 }
-                if (texts.insert(key).second) all[entry.name].push_back(named);
+                if (keys.insert(key).second) all[entry.name].push_back(named);
             }
         }
     }
