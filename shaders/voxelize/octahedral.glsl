@@ -1,5 +1,5 @@
-// Unit vectors in 32 bits, by the octahedral map (Cigolle et al. 2014); 0 = none. Packed likewise in
-// voxelizer/surface/surface.cpp.
+// Unit vectors in 32 bits, by the octahedral map (Cigolle et al. 2014); 0 = no vector. The twin in C++ is
+// packed_normal() of voxelizer/surface/surface.cpp.
 vec3 decode_normal(uint packed_normal) {
     const vec2 e = unpackSnorm2x16(packed_normal);
     const float z = 1.0 - abs(e.x) - abs(e.y);
@@ -7,7 +7,7 @@ vec3 decode_normal(uint packed_normal) {
     return normalize(vec3(z < 0.0 ? folded : e, z));
 }
 
-// Straight up would be 0: it leans by the least step.
+// The vector (0, 0, 1) would be 0, so it is turned by the least step.
 uint encode_normal(vec3 n) {
     const float sum = abs(n.x) + abs(n.y) + abs(n.z);
     if (!(sum > 0.0)) return 0u;
