@@ -135,8 +135,8 @@ uint snorm_16(double value) {
     return uint(scaled < 0.0LF ? -nearest : nearest) & 0xFFFFu;
 }
 
-// A unit normal by the octahedral map, as packed_normal() of voxelizer/surface/surface.cpp.
-uint packed_normal(dvec3 normal) {
+// A unit normal by the octahedral map, as encode_normal() of voxelizer/surface/surface.cpp.
+uint encode_normal(dvec3 normal) {
     const double sum = abs(normal.x) + abs(normal.y) + abs(normal.z);
     if (!(sum > 0.0LF) || isinf(sum)) return 0u;
     dvec2 e = normal.xy / sum;
@@ -172,13 +172,13 @@ void main() {
     if (item.first_normal == DEFORM_NONE) return;
     const vec3 normal = morphed_normal(item, vertex);
     if (is_skinned) {
-        attributes[thread].normal = packed_normal(dvec3(skinned_normal(place, normal)));
+        attributes[thread].normal = encode_normal(dvec3(skinned_normal(place, normal)));
         return;
     }
     const dvec3 x = column_of(item.matrix + 1u, 0u);
     const dvec3 y = column_of(item.matrix + 1u, 1u);
     const dvec3 z = column_of(item.matrix + 1u, 2u);
     attributes[thread].normal =
-        packed_normal(x * double(normal.x) + y * double(normal.y) + z * double(normal.z));
+        encode_normal(x * double(normal.x) + y * double(normal.y) + z * double(normal.z));
 #endif
 }

@@ -1,7 +1,7 @@
 // Unit vectors in 32 bits, by the octahedral map (Cigolle et al. 2014); 0 = no vector. The twin in C++ is
-// packed_normal() of voxelizer/surface/surface.cpp.
-vec3 decode_normal(uint packed_normal) {
-    const vec2 e = unpackSnorm2x16(packed_normal);
+// encode_normal() of voxelizer/surface/surface.cpp.
+vec3 decode_normal(uint encoded) {
+    const vec2 e = unpackSnorm2x16(encoded);
     const float z = 1.0 - abs(e.x) - abs(e.y);
     const vec2 folded = (1.0 - abs(e.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(e, vec2(0.0)));
     return normalize(vec3(z < 0.0 ? folded : e, z));
