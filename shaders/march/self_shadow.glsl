@@ -10,9 +10,12 @@
 
 vec3 receiver;
 vec3 receiver_normal;
-float self_shadow_height;  // voxels whose centres lie lower over the tangent plane may be the receiver's
-float self_shadow_reach;   // voxels that the ray meets before this distance may be the receiver's
-float receiver_rise;       // rise of the ray over the tangent plane, per unit of the ray's length
+// Voxels whose centres lie lower over the tangent plane may be the receiver's.
+float self_shadow_height;
+// Voxels that the ray meets before this distance may be the receiver's.
+float self_shadow_reach;
+// Rise of the ray over the tangent plane, per unit of the ray's length.
+float receiver_rise;
 
 float self_shadow_reach_of(float side) {
     return side * clamp(SELF_SHADOW_CLIMB / receiver_rise, SELF_SHADOW_LEAST_REACH, SELF_SHADOW_MOST_REACH);

@@ -28,7 +28,8 @@ const double MASK_SPLIT = 67108864.0LF;  // 2^26
 
 struct MaskedTriangle {
     ivec3 x, y, z;        // coordinates of the vertices, on the lattice
-    ivec3 u, v;           // texture coordinates in units of 1 / texel_side texels, less `period`
+    // Texture coordinates in units of 1 / texel_side texels, less `period`.
+    ivec3 u, v;
     ivec3 alpha;          // vertex alphas, 0 to 255
     ivec2 period;         // whole textures that were subtracted from u and v
     int texel_side;

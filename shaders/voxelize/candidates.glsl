@@ -2,8 +2,10 @@
 #include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_VOXEL_CANDIDATES) restrict buffer VoxelCandidateBlock {
-    uint candidate_count;  // number of candidates; those past VOXEL_CANDIDATES found no room
+    // Number of candidates; those past VOXEL_CANDIDATES found no room.
+    uint candidate_count;
     uint undecided_count;
     uint padding[2];
-    ivec4 candidates[];    // xyz: voxel; w: triangle, or -1 - triangle once the voxel is left to the CPU
+    // xyz: voxel; w: triangle, or -1 - triangle once the voxel is left to the CPU.
+    ivec4 candidates[];
 };

@@ -54,7 +54,8 @@ struct ExactTriangle {
 #endif
     dvec3 normal;       // (b - a) x (c - a)
 
-    bool filtered;      // false: the triangle is too wide for floats, and every row is in doubt
+    // false: the triangle is too wide for floats, and every row is in doubt.
+    bool filtered;
     // Side * (y, z, 1) >= 0 where a row meets the inside of a side, +-SIDE_ERROR.
     vec3 side_y, side_z, side_offset;
     SideBounds xy, xz;

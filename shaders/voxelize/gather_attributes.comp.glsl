@@ -25,7 +25,8 @@ uniform uint count;
 const double ON_SIDE = 1.52587890625e-5LF;  // 2^-16
 
 #define MAX_CORNERS 9  // three, and one more for each side that cuts
-dvec2 corners[2 * MAX_CORNERS];  // weights of the second and third vertex; the piece lies in one half
+// Weights of the second and third vertex; the piece lies in one half.
+dvec2 corners[2 * MAX_CORNERS];
 
 struct Piece {
     int first;  // first corner in `corners`

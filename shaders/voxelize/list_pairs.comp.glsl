@@ -23,7 +23,8 @@ uniform int voxel_shift;
 uniform ivec2 part_slices;  // first and last z of the part, in the region
 uniform uvec2 part;         // first rank, and one past the last
 
-uniform uint first;  // number of the first triangle, or its place in the subset or in the queue
+// Number of the first triangle, or its place in the subset or in the queue.
+uniform uint first;
 uniform uint count;  // number of triangles
 #if LARGE
 uniform uint slice_count;

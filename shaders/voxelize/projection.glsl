@@ -23,7 +23,8 @@ uniform int tall;               // the layer of x has y downwards, not z
 uniform float tile_middle;
 // Clip units per voxel: the viewport's side is a power of two, so that scaling is exact.
 uniform float viewport_scale;
-uniform float half_pixel;       // 0.5: pixels count that touch the primitive; 0: pixels whose centre lies in it
+// 0.5: pixels count that touch the primitive; 0: pixels whose centre lies in it.
+uniform float half_pixel;
 
 // Distance in pixels by which a cover is enlarged, since snapping moves a vertex by up to 1/256 of a pixel.
 const float COVER_MARGIN = 0.015625;
@@ -31,11 +32,13 @@ const float COVER_MARGIN = 0.015625;
 const float ACUTE = 0.2;
 
 struct Projection {
-    vec2 corners[3];     // corners of the triangle, segment or point that is rasterized, voxels
+    // Corners of the triangle, segment or point that is rasterized, voxels.
+    vec2 corners[3];
     bool visible;        // there is something to rasterize
     vec3 plane;          // depth at (x, y) from the tile's middle: dot(plane, (x, y, 1))
     vec2 limits;         // least and greatest depth
-    vec3 sides[3];       // inside where dot(side, (x, y, 1)) >= 0; |side.x| + |side.y| = 1
+    // Inside where dot(side, (x, y, 1)) >= 0; |side.x| + |side.y| = 1.
+    vec3 sides[3];
     vec4 box;            // low and high corner of the primitive, from the tile's middle
     // Weights of the second and third corner at (x, y): dot(weight, (x, y, 1)).
     vec3 weight_b, weight_c;

@@ -14,7 +14,8 @@ layout(location = 0) out uvec4 slices[TARGETS];
 
 uniform float tile_middle;
 uniform float half_pixel;
-uniform float slack;  // voxels: more than the rounding of a plane or a side inside the tile
+// In voxels: more than the rounding of a plane or a side inside the tile.
+uniform float slack;
 uniform uint kind;    // RASTER_*: the list that is drawn
 
 #if COVER

@@ -9,7 +9,8 @@
 #include "common/thread.glsl"
 
 layout(binding = TEXTURE_SLICES) uniform usampler2DArray target_slices;
-uniform ivec3 tile_place;  // low corner, in voxels from the region's low corner; x is a multiple of 32
+// Low corner, in voxels from the region's low corner; x is a multiple of 32.
+uniform ivec3 tile_place;
 uniform ivec3 tile_size;
 uniform int axis;  // direction of the target, 1 or 2, if not ALONG_X
 uniform int layer;
