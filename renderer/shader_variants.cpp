@@ -49,7 +49,7 @@ std::vector<gl::ShaderVariants> of_producers() {
         for (const bool has_color : {false, true}) {
             for (const gl::Defines& mask : gl::each_value("HAS_MASK", {0, 1})) {
                 for (const gl::Defines& finds : gl::each_value("FINDS_EMPTY", {0, 1}))
-                    surface.push_back(joined(joined(shape.defines(has_color), mask), tells));
+                    surface.push_back(joined(joined(shape.defines(has_color), mask), finds));
             }
         }
     }

@@ -77,8 +77,8 @@ std::vector<std::uint32_t> PyramidShadows::Impl::light(const View& view, int sho
         const int end = std::min(mesh.first_row + mesh.rows, view.size.height);
         marched.first_row = row;
         marched.row_count = end - row;
-        const auto band =
-            shadows.light(marched, pyramid, {mesh.first_row, mesh.nearest, mesh.surface, MESH_OWN_HEIGHT});
+        const auto band = shadows.light(
+            marched, pyramid, {mesh.first_row, mesh.nearest, mesh.surface, MESH_SELF_SHADOW_HEIGHT});
         pixels.insert(pixels.end(), band.begin(), band.end());
         times.trace_ms += shadows.last_milliseconds();
         times.passes += shadows.last_passes();
