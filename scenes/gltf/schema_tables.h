@@ -12,11 +12,11 @@ enum class Kind {
     number,
     numbers,
     whole,      ///< 0, 1, 2, ... up to 2^53
-    whole_int,  ///< 0, 1, 2, ... up to 2^31 - 1: what tinygltf keeps in an int
+    whole_int,  ///< 0, 1, 2, ... up to 2^31 - 1: an int of tinygltf
     index,      ///< index into the array `target`
     indices,
-    index_map,   ///< an object of indices: the attributes of a primitive
-    index_maps,  ///< an array of such objects: the morph targets of a primitive
+    index_map,   ///< object of indices: the attributes of a primitive
+    index_maps,  ///< array of objects of indices: morph targets
     any_object,  ///< an object that is kept as it is
     object,
     objects,

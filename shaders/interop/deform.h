@@ -30,7 +30,8 @@ struct DeformItem {
     // Number in SSBO_DEFORM_MATRICES: of world_from_mesh. The next matrix is normal_from_mesh, in its first
     // nine numbers.
     uint matrix;
-    uint first_joint;      // number of the matrix of the skin's first joint; DEFORM_NONE: no skin
+    // Number of the matrix of the skin's first joint; DEFORM_NONE: no skin.
+    uint first_joint;
     uint first_influence;  // number of the first DeformInfluences of first_vertex
     uint set_count;        // DeformInfluences per vertex
     // Number in SSBO_DEFORM_VECTORS of the normal of first_vertex; DEFORM_NONE: no normals.
@@ -60,7 +61,8 @@ struct DeformHeader {
     double scale;          // Grid::lattice_scale
     uint stray;            // number of vertices that SurfaceChunk::positions cannot hold
     uint lost;             // number of vertices past LATTICE_WORLD_LIMIT, or not finite
-    uint far_triangles;    // number of triangles with a stray vertex that may reach the root cube
+    // Number of triangles with a stray vertex that may reach the root cube.
+    uint far_triangles;
     uint padding;
 };
 

@@ -60,7 +60,8 @@ namespace cairn::interop {
 // low corner. If rays go through windows, they read `eye`, `light` and `light_is_positional` from MarchWindow
 // instead. Buffers of pixels hold the band alone: the rows of the picture that are marched at once.
 struct MarchView {
-    vec3 eye;                  // the eye, moved forward to the root cube, for the precision of floats
+    // The eye, moved forward to the root cube, for the precision of floats.
+    vec3 eye;
     float pixel_cone;          // width of a pixel's cone at distance 1
     vec3 forward;              // unit
     // Distance by which `eye` was moved along `forward`. Rays start in the plane across `forward` through
@@ -92,7 +93,8 @@ struct MarchView {
     int has_shadow_ends;       // 1: there are ShadowEnds
     int shadow_rays;           // number of shadow rays per pixel
     int light_shape;           // LIGHT_*
-    int is_soft;               // 1: shadow rays go to samples of the light; 0: one goes to its middle
+    // 1: shadow rays go to samples of the light; 0: one goes to its middle.
+    int is_soft;
     int is_cones;              // 1: soft shadow rays are cones
     float shadow_cone_scale;   // width of shadow rays, in units of their pixels' cones
     int padding1, padding2, padding3;
@@ -102,8 +104,10 @@ struct MarchView {
 struct RayState {
     vec4 color;            // rgb: gathered colour, premultiplied; a: transmittance
     vec3 normal;           // gathered normal; for a volume, the colour that the light adds
-    float depth;           // distance of the voxel that weighs most: where shadow rays start
-    uvec2 place;           // packed voxel where the ray stands, or RAY_NOT_STARTED in place.y
+    // Distance of the voxel that weighs most: where shadow rays start.
+    float depth;
+    // Packed voxel where the ray stands, or RAY_NOT_STARTED in place.y.
+    uvec2 place;
     float distance;        // distance that the ray has gone
     // Primary ray: the greatest weight so far. Shadow ray: the share of the light that is left.
     float weight;

@@ -51,9 +51,11 @@ struct MeshTriangle {
     float height;          // scalar product of the normal and a point of the triangle
     vec3 corner;           // first vertex
     float nearest;         // least distance of a vertex along MarchView.forward
-    vec3 second;           // scalar product with (point - corner): weight of the second vertex
+    // Scalar product with (point - corner): weight of the second vertex.
+    vec3 second;
     float furthest;        // greatest distance of a vertex along MarchView.forward
-    vec3 third;            // scalar product with (point - corner): weight of the third vertex
+    // Scalar product with (point - corner): weight of the third vertex.
+    vec3 third;
     float padding;
 };
 

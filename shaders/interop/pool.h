@@ -32,7 +32,8 @@ namespace cairn::interop {
 struct NodeEntry {
     uvec2 child_mask;  // bit x + N (y + N z): child (x, y, z) is not empty
     uint children;     // number of the first child's entry; 0 = leaf
-    uint brick;        // NODE_SLOT: slot + 1, 0 = no brick; the other bits are NODE_* flags
+    // NODE_SLOT: slot + 1, 0 = no brick; the other bits are NODE_* flags.
+    uint brick;
 };
 
 #ifdef __cplusplus

@@ -23,14 +23,16 @@ namespace cairn::interop {
 // A tile whose brick is being produced.
 struct BrickTile {
     ivec3 low;      // low corner without the border, in voxels of the tile's level
-    int size;       // log2 of a voxel's side in lattice units; the side itself if N = 3
+    // log2 of a voxel's side in lattice units; the side itself if N = 3.
+    int size;
     int slot;
     int padding1, padding2, padding3;
 };
 
 // A tile of the fractal (renderer/produce/fractal_content.h) whose brick is being produced.
 struct FractalTile {
-    ivec3 first_texel;  // first texel of the slot in the pool's textures, border included
+    // First texel of the slot in the pool's textures, border included.
+    ivec3 first_texel;
     int slot;
     uint neighbours;    // bit x + 3 (y + 3 z): the tile (x, y, z) - 1 away is not empty
     uint padding1, padding2, padding3;

@@ -42,7 +42,8 @@ struct MicroPatch {
     uint texel;            // texel of the occluder map
     float inverse_depth;   // 1 / distance from the light's plane
     uint extent_low;       // first texel of the penumbra extent
-    uint extent_high;      // past the last texel of the extent; equal to the first: no texel is darkened
+    // Past the last texel of the extent; equal to the first: no texel is darkened.
+    uint extent_high;
 };
 
 #ifdef __cplusplus

@@ -32,7 +32,8 @@ struct ShadowSum {
 struct ShadowConeSum {
     uint ray;              // number of the cone that waits
     float visible;         // sum of the visibilities of the cones before it
-    float front;           // front_sum of the cone that waits (shaders/march/shadow_cone.glsl)
+    // front_sum of the cone that waits (shaders/march/shadow_cone.glsl).
+    float front;
     float back;            // back_sum of the cone that waits
 };
 

@@ -41,7 +41,8 @@ struct SurfaceTriangle {
 };
 
 struct SurfaceAttributes {
-    uint normal;    // octahedral, snorm 16 + 16; 0 = none: the triangle's normal is used
+    // Octahedral, snorm 16 + 16; 0 = none: the triangle's normal is used.
+    uint normal;
     uint color;     // RGBA8, linear, 255 = 1
     vec2 texcoord;  // texture coordinate, after KHR_texture_transform
 };

@@ -27,7 +27,8 @@ struct MarchWindow {
     vec3 eye;
     int level;                // tree level of the tiles
     vec3 light;               // position of the light, or unit direction to it
-    int light_is_positional;  // 0: `light` is a direction, also for a positional light far away
+    // 0: `light` is a direction, also for a positional light far away.
+    int light_is_positional;
     ivec3 shift;              // low corner in voxels of the next, coarser window
     int padding;
     uvec4 tiles[2];           // tile x + 2 (y + 2 z): its entry, or WINDOW_*

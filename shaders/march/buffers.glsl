@@ -28,6 +28,7 @@ uniform uint pass_number;
 uniform uint query_capacity;      // queries that fit, at most QUERY_CAPACITY
 uniform uint usage_query_offset;  // word in usage[] where the query bits start
 #if PROGRESSIVE
-uniform bool stand_in;            // the last pass of a frame: ancestors stand in, and no ray may wait
+// The last pass of a frame: ancestors stand in, and no ray may wait.
+uniform bool stand_in;
 uniform uint entry_count;         // entries in the node pool
 #endif

@@ -7,7 +7,8 @@
 struct Place {
     int slot;         // -1: none
     int tile_shift;   // log2 of the tile's side
-    int mip;          // mip of the brick that is shown, or the finer of the two that are blended
+    // Mip of the brick that is shown, or the finer of the two that are blended.
+    int mip;
 #if PROGRESSIVE
     // log2 of the side of the tile that the brick belongs to: this tile, or an ancestor that stands in.
     int brick_shift;
@@ -15,7 +16,8 @@ struct Place {
 #if HAS_CONSTANT
     uint entry;       // entry of the constant node, after DESCENT_CONSTANT
 #endif
-    uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
+    // Bits of the brick's first 64 blocks of voxels: whether the block is not empty.
+    uvec2 summary;
 };
 
 // Log2 of the side of the voxels of the brick's mip 0.

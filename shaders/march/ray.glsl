@@ -8,7 +8,8 @@ struct Ray {
     vec3 origin;
     vec3 direction;       // unit
     vec3 inverse;         // 1 / direction; 0 along inert axes
-    bvec3 inert;          // axes whose planes the ray never crosses: the component is under LEAST_DIRECTION
+    // Axes whose planes the ray never crosses: the component is under LEAST_DIRECTION.
+    bvec3 inert;
     ivec3 positive;       // 1 along axes where the direction is positive, else 0
     float t;              // distance that the ray has gone
     float t_end;
@@ -16,7 +17,8 @@ struct Ray {
     float cone_base;      // the cone's width at t is cone_base + cone_slope * t
     float cone_slope;
 #if WINDOWS
-    int window;           // window that the ray is in; lengths and positions are in its voxels
+    // Window that the ray is in; lengths and positions are in its voxels.
+    int window;
     bool from_eye;        // `origin` is the eye
 #endif
 };

@@ -1,18 +1,21 @@
 // The receiver of a shadow ray does not shadow itself: a voxel near the receiver's tangent plane, and near
 // the receiver, is part of the receiver's surface.
 #define VOXEL_HALF_DIAGONAL 0.87  // in sides of the voxel; half of sqrt(3) is a little less
-#define LEAST_RECEIVER_RISE 1e-3
-// How far along a ray voxels may be the receiver's, in sides of a voxel: SELF_SHADOW_CLIMB over the rise of
-// the ray, which stays longer among them at a low angle, within two limits.
+#define LEAST_RECEIVER_RISE 1e-3  // lower rays are taken to rise so much
+// The distance along the ray up to which voxels may be the receiver's is SELF_SHADOW_CLIMB / receiver_rise
+// within two limits, in sides of a voxel: a ray at a low angle stays longer among them.
 #define SELF_SHADOW_CLIMB 2.5
 #define SELF_SHADOW_LEAST_REACH 8.0
 #define SELF_SHADOW_MOST_REACH 64.0
 
 vec3 receiver;
 vec3 receiver_normal;
-float self_shadow_height;  // voxels whose centres lie lower over the tangent plane may be the receiver's
-float self_shadow_reach;   // voxels that the ray meets before this distance may be the receiver's
-float receiver_rise;       // of the ray over the tangent plane, per unit of the ray's length
+// Voxels whose centres lie lower over the tangent plane may be the receiver's.
+float self_shadow_height;
+// Voxels that the ray meets before this distance may be the receiver's.
+float self_shadow_reach;
+// Rise of the ray over the tangent plane, per unit of the ray's length.
+float receiver_rise;
 
 float self_shadow_reach_of(float side) {
     return side * clamp(SELF_SHADOW_CLIMB / receiver_rise, SELF_SHADOW_LEAST_REACH, SELF_SHADOW_MOST_REACH);

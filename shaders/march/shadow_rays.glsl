@@ -19,7 +19,8 @@
 struct LightSample {
     vec3 direction;  // unit direction from the receiver
     float reach;     // distance from the receiver
-    float width;     // width at distance 1 of the part of the light that the sample stands for
+    // Width at distance 1 of the part of the light that the sample stands for.
+    float width;
 };
 
 bool pauses_before_ray();

@@ -11,7 +11,8 @@
 #define LEAST_SIZE 1e-3  // of Faces::all: with less, the normals cancel out
 
 struct Faces {
-    vec3 seen;     // sum of the normals that face the viewer, each times the part of the picture that it covers
+    // Sum of the normals that face the viewer, each times the part of the picture that it covers.
+    vec3 seen;
     vec3 all;      // sum of all normals
     float spread;  // sum of 1 - cosine between the two normals of each texel
 };
@@ -43,7 +44,8 @@ vec3 visible_normal(Faces faces, vec3 direction) {
     const vec3 normal = faces.all / size;
     const float away = dot(normal, direction);
 #if BLENDED
-    const float bend = SILHOUETTE_BEND;  // two mips must not turn to opposite sides while their shares change
+    // Two mips must not turn to opposite sides while their shares change.
+    const float bend = SILHOUETTE_BEND;
 #else
     // The distance between the two unit normals; the outermost normals are about as far from the mean.
     const float bend = clamp(sqrt(max(2.0 * faces.spread / size, 0.0)), VOXEL_SILHOUETTE_BEND, SILHOUETTE_BEND);

@@ -64,7 +64,8 @@ vec4 mean_optics(float s0, float s1) {
 
 // The chord of a ray in a voxel, cut in VOLUME_STEPS steps. Lengths are in voxels of the finest level.
 struct Chord {
-    vec3 middle;     // middle of the chord relative to the voxel's centre, in voxels of the level
+    // Middle of the chord relative to the voxel's centre, in voxels of the level.
+    vec3 middle;
     vec3 direction;  // voxels of the level per voxel of the finest level
     float from;      // start of the chord, relative to its middle
     float step;      // length of a step

@@ -16,7 +16,8 @@ struct MeshPixel {
     float t;      // distance from the ray's origin; MESH_MISS = no mesh
     vec3 color;   // linear base colour
     vec3 normal;  // interpolated normal; 0 = no mesh
-    vec3 plane;   // normal of the triangle's plane, turned to the viewer; 0 = no mesh
+    // Normal of the triangle's plane, turned to the viewer; 0 = no mesh.
+    vec3 plane;
 };
 
 // `pixel` counts from the band's first.

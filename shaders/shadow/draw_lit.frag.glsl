@@ -21,7 +21,8 @@ in vec2 surface_texcoord;
 in vec3 light_position;
 
 layout(location = 0) out vec4 color;
-layout(location = 1) out vec2 visible_distance;  // visible share, -1 if this is no receiver; distance from the eye
+// Visible share, -1 if this is no receiver; distance from the eye.
+layout(location = 1) out vec2 visible_distance;
 
 // The visible share, interpolated between those of the four nearest texels that have a receiver: beside a
 // receiver's edge the other texels hold nothing about it.

@@ -3,7 +3,8 @@
 #include "interop/shadow_map.h"
 
 layout(binding = TEXTURE_SHADOW_RECEIVERS) uniform sampler2D receivers;
-uniform vec4 tangents_from_pixel;  // scale and offset to tangents over the light's width and height
+// Scale and offset to tangents over the light's width and height.
+uniform vec4 tangents_from_pixel;
 
 flat in vec4 patch_edges;  // tangents over the light's width and height: low.xy, high.xy
 flat in float patch_inverse_depth;

@@ -53,7 +53,8 @@ ivec3 voxel_at(Ray ray, float t, bvec3 tied, ivec3 last) {
 
 // The ray's way through the node of a level around its voxel.
 struct Crossed {
-    int from;        // first x of the voxels that are tested, in the order of the ray
+    // First x of the voxels that are tested, in the order of the ray.
+    int from;
     int to;          // last x of the voxels that are tested
     int exit_axis;   // axis across whose plane the ray leaves
     float t_exit;    // time at which the ray leaves

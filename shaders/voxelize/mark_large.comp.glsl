@@ -1,5 +1,5 @@
-// Threads share a queued triangle: threads_per_triangle of them share its steps (row_steps.glsl), and, where
-// there are more threads than steps, the rows of a step.
+// threads_per_triangle threads share a queued triangle: they share its steps (row_steps.glsl) and, if there
+// are more threads than steps, the rows of each step.
 #include "interop/voxelize.h"
 #include "voxelize/bits.glsl"
 #define ANY_VOXEL_SIDE 0
@@ -13,12 +13,12 @@
 
 uniform int voxel_shift;
 uniform uint queue;
-uniform uint first;                 // place in the queue
-uniform uint count;                 // of triangles
-uniform uint threads_per_triangle;  // a multiple or a part of a workgroup's
+uniform uint first;                 // place of the first triangle in the queue
+uniform uint count;                 // number of triangles
+uniform uint threads_per_triangle;  // a multiple or a part of VOXEL_GROUP
 
-// Rows that the filter leaves in doubt are decided some at a time: lanes run in lockstep, and doubles for one
-// would cost all of them dearly at every turn.
+// Rows that the filter leaves in doubt are decided some at a time, because lanes run in lockstep: doubles for
+// one lane cost all lanes dearly at every turn.
 #define DOUBT_CAPACITY 64
 ivec2 doubts[DOUBT_CAPACITY];
 

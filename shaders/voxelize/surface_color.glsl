@@ -7,7 +7,7 @@ vec3 linear_from_srgb(vec3 c) {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
-// A point on a triangle, by weights of its vertices.
+// A point on a triangle, by the weights of its vertices.
 struct SurfacePoint {
     uvec3 vertices;
     vec3 weights;

@@ -45,7 +45,7 @@ unsigned ConservativeVoxelizer::threads_per_triangle(const Region& region, unsig
     unsigned of_class = VOXEL_SHARED_LEAST;
     for (unsigned smaller = VOXEL_QUEUE_SHARED; smaller < queue; ++smaller)
         of_class *= VOXEL_SHARED_FACTOR;
-    // What the region's largest triangle may need: twice the rows, because they are shared unevenly.
+    // The region's largest triangle may need threads for twice its rows, because rows are shared unevenly.
     const glm::uvec3 size(region.size);
     const std::size_t rows = 2 * (std::size_t(size.y) * size.z + 8 * std::max(size.y, size.z));
     const std::size_t groups = rows / thread_rows(region) / VOXEL_GROUP + 1;

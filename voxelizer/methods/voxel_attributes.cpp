@@ -142,7 +142,7 @@ void AttributeVoxelizer::gather_chunk(const ChunkBinding& chunk, const Region& r
     }
     subset_ = subset;
     list_small_.set("has_subset", int(subset != nullptr));
-    // Where pairs find no room, half of the triangles are listed anew: few always have room.
+    // If pairs find no room, half of the triangles are listed anew; for few triangles there is always room.
     std::vector<Work> waiting;
     for (std::size_t end = count; end > 0;) {
         const std::size_t batch = std::min<std::size_t>(end, VOXEL_BATCH_TRIANGLES);

@@ -156,7 +156,7 @@ private:
     int axis_, u_, v_;
     std::int64_t side_;
     Corners p_;                  ///< corners, in half lattice units from the region's low corner
-    std::array<Int, 3> normal_;  ///< normal of the corners as they were given, in lattice units
+    std::array<Int, 3> normal_;  ///< normal before corners were swapped, lattice units
     int winding_ = 0;
     int u_last_ = -1, first_v_ = 0, last_v_ = -1;
     bool tie_is_beyond_ = false;
