@@ -79,7 +79,7 @@ OptionTable<ShadowOptions> light_table() {
          [](const ShadowOptions& options) {
              return options.direction ? std::optional(direction_text(*options.direction)) : std::nullopt;
          }},
-        {"--light-size", "W,H", "makes --light a rectangle",
+        {"--light-size", "W,H", "make --light a rectangle",
          [](ShadowOptions& options, const char* option, const std::string& text) {
              const std::vector<double> n = parse_numbers(option, text, 2, 2);
              options.rectangle = {positive(option, n[0]), positive(option, n[1])};
@@ -88,7 +88,7 @@ OptionTable<ShadowOptions> light_table() {
              if (!options.rectangle) return std::nullopt;
              return fmt::format("{},{}", options.rectangle->x, options.rectangle->y);
          }},
-        {"--light-disk", "RADIUS", "makes --light a disk",
+        {"--light-disk", "RADIUS", "make --light a disk",
          [](ShadowOptions& options, const char* option, const std::string& text) {
              options.disk = positive(option, parse_number(option, text));
          },

@@ -17,7 +17,8 @@ namespace {
 constexpr double frame_aim_ms = 50.0;
 constexpr double slice_aim_ms = 30.0;
 constexpr double least_prefetch_ms = 5.0;
-constexpr double ahead_ms = 8.0;  // milliseconds of prefetching at a time while nothing moves
+// Milliseconds of prefetching at a time while nothing moves.
+constexpr double ahead_ms = 8.0;
 constexpr double first_pixels = 60000.0;
 /// The view stands still once it has not changed for this long, which is more than the time between two
 /// events of a slow drag.

@@ -27,7 +27,8 @@ constexpr double slow_budgets = 2.5;
 
 struct PaperRow {
     int number;
-    std::array<double, 3> ms;  ///< times of knot, tree and spheres on a GeForce 8800 GTX
+    /// Times of knot, tree and spheres on a GeForce 8800 GTX.
+    std::array<double, 3> ms;
 };
 constexpr std::array<const char*, 3> paper_scenes = {"knot", "tree", "spheres"};
 constexpr std::array<PaperRow, 7> table_2 = {{{1, {29, 46, 17}},

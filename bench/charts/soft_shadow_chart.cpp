@@ -230,9 +230,9 @@ private:
                     spent += ms;
                 if (run > 0 && spent > contender_ms) continue;
                 SoftShadowMap& map = map_of(contender.occluder_size, contender.passes, contender.format);
-                const StudyCase& study = contender.study_case->study;
-                map.compute(study.light(), study.frustum(contender.window),
-                            contender.mesh != nullptr ? *contender.mesh : mesh_, study.floor());
+                const StudyCase& study_case = contender.study_case->study;
+                map.compute(study_case.light(), study_case.frustum(contender.window),
+                            contender.mesh != nullptr ? *contender.mesh : mesh_, study_case.floor());
                 contender.samples_ms.push_back(map.statistics().milliseconds);
                 if (run > 0) continue;
                 contender.statistics = map.statistics();

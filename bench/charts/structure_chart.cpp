@@ -21,7 +21,8 @@ namespace {
 constexpr int picture = 256;
 constexpr double inner = 0.25;
 constexpr double outer = 0.30;
-constexpr double optical_depth = 1.0;  // depth of density 1 per voxel: opaque after a few voxels
+// Depth of density 1 per voxel: opaque after a few voxels.
+constexpr double optical_depth = 1.0;
 /// Places of the eye on the axis through the middle of the cube [0, 1]^3. It looks towards greater ones.
 constexpr std::array places = {0.5, 0.0, -0.5, -1.0};
 constexpr double place_of_shapes = -0.5;

@@ -47,7 +47,8 @@ private:
     gl::TextureHandle depths_;
     gl::FramebufferHandle target_;
     gl::VertexArrayHandle no_attributes_;
-    std::vector<gl::QueryHandle> queries_;  // one per box of the last begin(); empty if the eye is inside
+    // One per box of the last begin(); empty if the eye is inside.
+    std::vector<gl::QueryHandle> queries_;
 };
 
 }  // namespace cairn::bench

@@ -84,7 +84,8 @@ private:
     void show();
     renderer::PassResult march(renderer::Marcher& marcher, renderer::PassKind kind);
 
-    interop::MarchView view_;  // first, so that it is checked before the content is used
+    // First, so that it is checked before the content is used.
+    interop::MarchView view_;
     renderer::TileCache cache_;
     ViewTest test_;
     renderer::Marcher saturate_;

@@ -86,7 +86,8 @@ private:
     bool is_perspective_ = true;
     glm::dvec2 low_{-1.0}, high_{1.0};  ///< window of the map: x / z and y / z, or x and y
     double near_ = 1.0, far_ = 2.0;
-    glm::dvec2 half_{0.0};  ///< half sides of the light; at infinity, tangent of its angle
+    /// Half sides of the light; at infinity, tangent of its angle.
+    glm::dvec2 half_{0.0};
     std::size_t count_ = 0;
     gl::Buffer points_, normals_, shares_;
     gl::Program draw_program_, fixed_program_, penumbra_program_;

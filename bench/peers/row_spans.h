@@ -82,11 +82,13 @@ private:
 
     glm::ivec3 low_, high_;
     int shift_;
-    glm::i64vec3 corner_;  ///< a corner in lattice units, relative to the low corner
+    /// A corner in lattice units, relative to the low corner.
+    glm::i64vec3 corner_;
     glm::i64vec3 normal_;  ///< normal with x >= 0
     ProjectedSides xy_, xz_, yz_;
     bool has_plane_;
-    glm::dvec2 slope_{0.0};  ///< slopes along y and z of the plane's lowest x in a row
+    /// Slopes along y and z of the plane's lowest x in a row.
+    glm::dvec2 slope_{0.0};
     double plane_at_low_ = 0.0, plane_width_ = 0.0, plane_error_ = 0.0;
 };
 

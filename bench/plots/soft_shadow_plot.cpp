@@ -26,7 +26,8 @@ const PlotStyle& line_style(std::size_t line) {
     return plot_styles[(line + 1) % plot_styles.size()];
 }
 
-constexpr double headroom = 1.45;  // height of a panel over that of its curves, for their names
+// Height of a panel over that of its curves, for their names.
+constexpr double headroom = 1.45;
 
 struct Series {
     std::string title;

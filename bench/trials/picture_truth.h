@@ -15,8 +15,9 @@ namespace cairn::bench {
                                                   const renderer::View& view);
 
 struct PictureErrors {
-    double rmse = 0.0;        ///< root mean square error of sRGB values in [0, 1]
-    double silhouette = 0.0;  ///< wrongly covered area, per area that the scene covers
+    double rmse = 0.0;  ///< root mean square error of sRGB values in [0, 1]
+    /// Wrongly covered area, per area that the scene covers.
+    double silhouette = 0.0;
 };
 /// Both pictures must have the same size.
 [[nodiscard]] PictureErrors picture_errors(const optics::Image& ours, const reference::ShadedImage& truth);

@@ -15,7 +15,8 @@ namespace cairn::bench {
 /// One run of a contender.
 struct ShadowRun {
     double milliseconds = 0.0;
-    std::vector<float> shares;  ///< share of the light per pixel, in [0, 1]; -1: unknown
+    /// Share of the light per pixel, in [0, 1]; -1: unknown.
+    std::vector<float> shares;
     bool fills_caches = false;  ///< did work that later runs do not repeat
     bool from_nothing = false;  ///< started with empty caches
 };

@@ -13,7 +13,8 @@ namespace {
 const glm::dvec3 to_light(-0.6, 1.0, 0.15);
 constexpr double light_distance = 1.5;
 constexpr double light_side = 0.2;
-constexpr double ground_gap = 0.002;  ///< gap below the scene, so that no triangle is in the ground's plane
+/// Gap below the scene, so that no triangle is in the ground's plane.
+constexpr double ground_gap = 0.002;
 constexpr double ground_margin = 0.15;
 
 /// Offset on the ground of the shadow of the bounds' top from their foot.

@@ -48,8 +48,10 @@ inline constexpr double study_light_height = 3.0;
 
 struct ShadowPlacement {
     double light_width = 0.5;
-    double lateral = 0.0;  ///< offset along x of the occluder from the light's middle
-    double gap = 0.0;      ///< height of the occluder's lowest point over the floor
+    /// Offset along x of the occluder from the light's middle.
+    double lateral = 0.0;
+    /// Height of the occluder's lowest point over the floor.
+    double gap = 0.0;
 };
 
 enum class StudyWindow : std::uint8_t {

@@ -186,7 +186,8 @@ TEST_F(SoftShadowFindings, ErrorGrowsWithTheLight) {
 // 4.2.4: a point light's error is "quite large", "an error of 1, over the entire shadow boundary", but "it
 // occurs only at the shadow boundary": within half a texel of the occluder map.
 TEST_F(SoftShadowFindings, APointLightIsWrongAtTheShadowsEdgeAlone) {
-    const int size = 44;  // no multiple of the points per side: they would all lie in the middle of patches
+    // No multiple of the points per side: they would all lie in the middle of patches.
+    const int size = 44;
     const Placed point(knot_, {.light_width = 0.01});
     const Placed small(knot_, {.light_width = 0.2});
     const SoftShadowErrors errors = point.errors(map_of(size, ShadowPasses::two));

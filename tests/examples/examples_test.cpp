@@ -114,7 +114,8 @@ TEST_F(Examples, VoxelizeToVdbWritesTheExactVoxels) {
     EXPECT_GT(vdb.size(), voxels / 8);
 }
 
-/// Of the example's formula, its wall's colours by the side of it, and nothing outside its ball.
+/// The picture shows the example's formula: each side of its wall has a colour, and outside its ball there is
+/// nothing.
 TEST_F(Examples, OwnProducerShowsItsFormula) {
     const std::string out = run("own_producer " + file("gyroid.ppm"));
     int bricks = 0;

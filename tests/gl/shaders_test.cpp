@@ -36,7 +36,8 @@ struct Case {
     std::string name;
     std::string stage;
     std::vector<Defines> sets;
-    std::size_t number = 0;  ///< number of the first set among those of the entry point
+    /// Number of the first set among those of the entry point.
+    std::size_t number = 0;
 };
 
 /// Sets per test. With a process per set, starting would take longer than compiling.

@@ -128,7 +128,7 @@ std::string fault_of(const fs::path& root, const std::string& file, bool quoted,
             if (!name.starts_with(external.name)) continue;
             if (begins_with_any(file, external.seen_by)) return {};
             return external.seen_by.empty()
-                       ? fmt::format("<{}> is for who uses the library", name)
+                       ? fmt::format("<{}> is for users of the library", name)
                        : fmt::format("<{}> is for {} only", name, fmt::join(external.seen_by, " and "));
         }
         return {};

@@ -23,8 +23,9 @@ using renderer::View;
 
 struct Difference {
     int largest = 0;
-    std::size_t pixels_over = 0;  ///< pixels that differ in a channel by more than the threshold
-    std::string first;            ///< first such pixel
+    /// Pixels that differ in a channel by more than the threshold.
+    std::size_t pixels_over = 0;
+    std::string first;  ///< first such pixel
 };
 
 Difference compare(const optics::Image& a, const optics::Image& b, int threshold) {
@@ -305,7 +306,8 @@ TEST_F(RendererTest, PictureLargerThanTheDriversBufferIsMarchedInBands) {
     const View small = finest_view(scene, 800, 1000);
     View large = small;
     large.size.width *= 2;
-    large.size.height *= 2;  // 3.2 million ray states of 48 bytes: more than 128 MiB
+    // 3.2 million ray states of 48 bytes: more than 128 MiB.
+    large.size.height *= 2;
     const optics::Image coarse = renderer.render(small).image;
     const optics::Image fine = renderer.render(large).image;
     ASSERT_EQ(fine.rgba.size(), 16U * 800U * 1000U);

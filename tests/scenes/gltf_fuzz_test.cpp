@@ -26,7 +26,8 @@ protected:
 
     /// Loads a file and plays its animations. The test fails if anything but a cairn::Error is thrown.
     void expect_survived(const Bytes& file, int round) {
-        std::filesystem::remove(path_);  // some file systems wait for the disk when a file is written over
+        // Some file systems wait for the disk when a file is written over.
+        std::filesystem::remove(path_);
         test::write_bytes(path_, file.data(), file.size());
         const auto start = std::chrono::steady_clock::now();
         try {

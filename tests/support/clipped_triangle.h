@@ -30,7 +30,8 @@ public:
             Triple corner = {0, 0, 0};
             Triple line = {0, 0, 0};
             corner[i] = 1;
-            line[(i + 2) % 3] = 1;  // along the side from corner i to the next, the third weight is 0
+            // Along the side from corner i to the next, the third weight is 0.
+            line[(i + 2) % 3] = 1;
             add(corner, line);
         }
     }

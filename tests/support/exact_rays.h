@@ -19,11 +19,13 @@ struct WideVector {
 
 /// A cube of voxels that rays march. The next cube contains it.
 struct Space {
-    glm::i64vec3 low{0};  ///< first voxel, in this space's voxels from the root cube's low corner
+    /// First voxel, in this space's voxels from the root cube's low corner.
+    glm::i64vec3 low{0};
     std::int64_t side = 0;
-    int voxel_shift = 0;  ///< log2 of a voxel's side, in voxels of the first space
-    int bits = 0;         ///< log2 of the number of voxels across the root cube
-    int step_shift = 0;   ///< log2 of the side of the largest cell to step over
+    /// Log2 of a voxel's side, in voxels of the first space.
+    int voxel_shift = 0;
+    int bits = 0;        ///< log2 of the number of voxels across the root cube
+    int step_shift = 0;  ///< log2 of the side of the largest cell to step over
 };
 
 struct ExactRay {

@@ -60,7 +60,8 @@ private:
 struct Face {
     double t = 0.0;
     std::size_t triangle = 0;
-    double cosine = 0.0;  ///< between ray and normal; negative if the front is seen
+    /// Cosine between ray and normal; negative if the front is seen.
+    double cosine = 0.0;
 };
 
 /// All faces before the origin, nearest first.

@@ -28,8 +28,9 @@ struct Trial {
     int resolution;
     bool has_vertex_alphas;
     struct Triangle {
-        std::array<glm::ivec3, 3> corners;    ///< corners, in units of 1 / steps of the cube
-        std::array<glm::ivec2, 3> texcoords;  ///< texture coordinates, in units of 1 / TEXEL_UNITS of a texel
+        std::array<glm::ivec3, 3> corners;  ///< corners, in units of 1 / steps of the cube
+        /// Texture coordinates, in units of 1 / TEXEL_UNITS of a texel.
+        std::array<glm::ivec2, 3> texcoords;
         std::array<int, 3> alphas;
     };
     std::vector<Triangle> triangles;

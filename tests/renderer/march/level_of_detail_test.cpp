@@ -106,8 +106,8 @@ TEST_F(LevelOfDetailTest, NothingPopsWhileTheConeGrowsSixteenfold) {
     Renderer renderer = make_renderer(scene, {.tree = {.max_resolution = 1024}});
     const int steps = 200;
     View view = view_of(scene, 96, 72, LevelOfDetail::Kind::blended);
-    view.shadow.kind =
-        renderer::ShadowQuality::Kind::none;  // edges of shadows move with the voxels that cast them
+    // Edges of shadows move with the voxels that cast them.
+    view.shadow.kind = renderer::ShadowQuality::Kind::none;
     const Jumps blended = jumps_of(renderer, view, steps);
     view.detail.kind = LevelOfDetail::Kind::nearest;
     const Jumps nearest = jumps_of(renderer, view, steps);

@@ -44,7 +44,8 @@ View finest_view(const scenes::Scene& scene) {
 }
 
 struct Difference {
-    std::size_t pixels_over = 0;  ///< pixels that differ in a channel by more than the threshold
+    /// Pixels that differ in a channel by more than the threshold.
+    std::size_t pixels_over = 0;
     std::string first;
 };
 

@@ -85,7 +85,8 @@ TEST_P(VolumeTrees, BordersBetweenLevelsDoNotShow) {
     view.show = renderer::Show::levels;
     Renderer renderer =
         voxel_renderer(slope, transfer, {.tree = {.n = n, .m = m}, .pools = {.brick_bytes = 8U << 20U}}, fog);
-    bool mixed = false;  // pixels that show more than one level have a mixed colour
+    // Pixels that show more than one level have a mixed colour.
+    bool mixed = false;
     for (const double pixel_error : {3.0, 2.0, 4.0, 1.5, 6.0, 8.0}) {
         if (mixed) break;
         view.detail.pixel_error = pixel_error;

@@ -222,7 +222,8 @@ TEST_F(TreeTest, WhatWasGivenOutInARoundStaysUntilTheNext) {
 }
 
 TEST_F(TreeTest, UsedBrickRenewsThePathToTheRoot) {
-    make(6, 8);  // the root's, its children, and two branches of two levels
+    // The root's, its children, and two branches of two levels.
+    make(6, 8);
     const std::uint32_t top = children(0);
     const std::uint32_t used = children(top);
     const int used_brick = brick(children(used));

@@ -140,7 +140,8 @@ TEST_P(ShapedBricks, HoldExactlyTheVoxelsThatClippingSays) {
     EXPECT_GT(occupied, 1000U) << "too little to prove anything";
 }
 
-/// With n = 8 the oracle is exact, and a root that is all of the tree holds something.
+/// Trees with tiles that the oracle keeps although they hold nothing: not those with N = 8, where the oracle
+/// is exact, and not a root that is the whole tree, which holds something.
 class InexactShapedBricks : public ShapedBricks {};
 
 TEST_P(InexactShapedBricks, TileIsToldConstantExactlyWhenItHoldsNothing) {

@@ -70,7 +70,8 @@ void expect_refused(const std::function<void()>& call, const std::string& part) 
 TEST_F(ShadowRenderers, AllAreNearTheSameTruth) {
     const Ball ball;
     View view = view_under(optics::aimed_light({0.6, 3.0, 1.6}, {0.0, 0.5, 0.0}, 0.5, 0.5));
-    view.detail.pixel_error = 0.1;  // shadows are no sharper than voxels, and pixels are large here
+    // Shadows are no sharper than voxels, and pixels are large here.
+    view.detail.pixel_error = 0.1;
     const reference::ImageTracer tracer(ball.made.scene, ball.made.whole);
     const reference::ShadowQuestion question{ball.made.scene, ball.made.whole, ball.floor,      view.camera,
                                              view.light,      view.size.width, view.size.height};

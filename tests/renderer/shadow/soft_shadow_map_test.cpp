@@ -207,7 +207,7 @@ TEST_F(SoftShadow, AlignedSquareIsTheClosedForm) {
         const std::vector<ReceiverPoint> points = receiver_points(map);
         const ShadowError error =
             error_of(points, exact_past(points, polygon_of(occluder), 2.0, half_size(light)));
-        EXPECT_LT(error.greatest, 5e-5) << size << " texels a side: " << error.worst;
+        EXPECT_LT(error.greatest, 5e-5) << size << " texels per side: " << error.worst;
         EXPECT_GT(error.shadowed, points.size() / 2);
     }
 }
@@ -223,8 +223,8 @@ TEST_F(SoftShadow, ErrorFallsWithTheSizeOfTheOccluderMap) {
         const std::vector<ReceiverPoint> points = receiver_points(map);
         const ShadowError error =
             error_of(points, exact_past(points, polygon_of(occluder), 2.0, half_size(light)));
-        EXPECT_LT(error.mean, before / 2.0) << size << " texels a side: " << error.worst;
-        EXPECT_LT(error.mean, 0.75 / size) << size << " texels a side: " << error.worst;
+        EXPECT_LT(error.mean, before / 2.0) << size << " texels per side: " << error.worst;
+        EXPECT_LT(error.mean, 0.75 / size) << size << " texels per side: " << error.worst;
         before = error.mean;
     }
 }
