@@ -16,9 +16,10 @@ namespace {
 /// Texels that are made and sent at once.
 constexpr std::size_t batch_bytes = std::size_t(4) << 20U;
 
-std::int64_t power(int n, int exponent) {
+/// Side of a voxel of a coarseness, in finest voxels: n to that power.
+std::int64_t voxel_side(int n, int coarseness) {
     std::int64_t side = 1;
-    for (int i = 0; i < exponent; ++i)
+    for (int i = 0; i < coarseness; ++i)
         side *= n;
     return side;
 }
@@ -110,7 +111,7 @@ private:
 };
 
 voxelizer::Grid grid_of(const VolumeShape& shape, const FieldFrame& frame) {
-    const auto finest = double(power(frame.n, shape.finest_coarseness));
+    const auto finest = double(voxel_side(frame.n, shape.finest_coarseness));
     return {frame.origin, frame.voxel_size * finest, glm::ivec3(shape.tree.resolution())};
 }
 
@@ -153,7 +154,7 @@ glm::uvec2 VolumeOracle::child_mask(const Tile& tile) {
 }
 
 bool VolumeOracle::is_empty(const Tile& tile) {
-    const std::int64_t voxel = power(shape_.tree.n, shape_.coarseness(tile.level));
+    const std::int64_t voxel = voxel_side(shape_.tree.n, shape_.coarseness(tile.level));
     const std::int64_t side = voxel * shape_.tree.m;
     // The tile with one voxel around it: fetches near the tile's sides mix that in. Finer levels mix in less.
     const glm::i64vec3 low = tile.position * side;
