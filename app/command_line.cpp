@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "renderer/open_content.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 
 namespace cairn::app {
 namespace {

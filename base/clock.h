@@ -17,6 +17,7 @@ inline double milliseconds_since(Clock::time_point start) {
     return milliseconds(Clock::now() - start);
 }
 
+/// The moment at which a budget that starts now is used up; at most a day from now.
 /// @throws Error (Fault::usage) if the budget is negative or not a number.
 inline Clock::time_point deadline_in(Milliseconds budget) {
     constexpr Milliseconds a_day{86.4e6};

@@ -8,12 +8,12 @@ namespace cairn {
 
 /// Whose fault it is. The command turns it into its exit code (app/terminal/exit_code.h).
 enum class Fault {
-    usage,        ///< the caller asked for something that cannot be
-    input,        ///< a file is damaged, missing or asks for what is not supported
+    usage,        ///< the caller asked for something impossible
+    input,        ///< a file is damaged or missing, or needs what is not supported
     context,      ///< no OpenGL 4.5 context, or the driver refused
-    memory,       ///< it does not fit
+    memory,       ///< data does not fit in memory or on a disk
     interrupted,  ///< the caller asked to stop
-    internal,     ///< a fault of Cairn itself; never expected
+    internal,     ///< a fault of Cairn itself, which should never happen
 };
 
 /// The one exception of the libraries: what went wrong, where, and a way out.

@@ -7,11 +7,12 @@
 
 namespace cairn {
 
-/// A file that appears whole or not at all: it is written beside its name and renamed by `commit()`.
-/// Without `commit()` nothing is left behind, and what stood there before stays. A symbolic link stays one:
-/// what it names is replaced. A device or a pipe (/dev/null) cannot be replaced, so it is written in place.
+/// A file that appears whole or not at all: the bytes go to a temporary file beside it, which `commit()`
+/// renames. Without `commit()` the temporary file is removed, and a file of that name from before stays. A
+/// symbolic link stays a link: the file that it names is replaced. A device or a pipe (/dev/null) cannot be
+/// replaced, so it is written in place.
 ///
-/// @throws Error (Fault::usage) when the folder is missing or not writable, (Fault::memory) when the disk is
+/// @throws Error (Fault::usage) if the folder is missing or not writable, (Fault::memory) if the disk is
 /// full.
 class OutputFile {
 public:
@@ -23,7 +24,7 @@ public:
     ~OutputFile();
 
     void write(const void* data, std::size_t size_bytes);
-    /// Zeros that follow; long ones take no room on disks that can leave them out.
+    /// Appends zeros. Long runs take no room on file systems that can store holes.
     void write_zeros(std::uint64_t size_bytes);
     void commit();
 
@@ -34,7 +35,7 @@ private:
     std::filesystem::path path_;
     std::filesystem::path temporary_;  // empty when written in place
     std::FILE* file_ = nullptr;
-    std::uint64_t zeros_ = 0;  // skipped since the last write
+    std::uint64_t zeros_ = 0;  // zeros that were skipped since the last write
 };
 
 }  // namespace cairn

@@ -7,11 +7,11 @@
 
 namespace cairn {
 
-/// A file without a name, for what does not fit in memory until an output is written. It lies on the output's
-/// disk (where that folder takes no files, in the folder for temporary ones) and is gone when this is, or
-/// when the program ends.
+/// A file without a name, for data that does not fit in memory until an output is written. The file lies in
+/// the output's folder or, if that takes no files, in the folder for temporary files. It is removed when the
+/// SideFile is destroyed or the program ends.
 ///
-/// @throws Error (Fault::usage) when neither folder takes files, (Fault::memory) when the disk is full.
+/// @throws Error (Fault::usage) if neither folder takes files, (Fault::memory) if the disk is full.
 class SideFile {
 public:
     explicit SideFile(const std::filesystem::path& output);
@@ -21,7 +21,7 @@ public:
     SideFile& operator=(SideFile&&) = delete;
     ~SideFile();
 
-    /// Appends; @return where it lies.
+    /// Appends bytes. @return their offset, for read().
     std::uint64_t write(const void* data, std::size_t size_bytes);
     void read(std::uint64_t offset, void* data, std::size_t size_bytes);
 

@@ -8,48 +8,30 @@ set(cairn_public_headers
   base/error.h
   gl/buffer.h
   gl/context.h
-  gl/debug.h
   gl/handle.h
   gl/shader_source.h
   optics/camera.h
   optics/image.h
   optics/light.h
-  reference/area_light.h
   reference/exact_voxels.h
   reference/image.h
   reference/shadow_truth.h
   renderer/frame/frame_statistics.h
   renderer/march/march_options.h
-  renderer/march/tile_queries.h
-  renderer/march/traversal.h
-  renderer/mesh/mix.h
   renderer/open_content.h
-  renderer/pool/brick_pool.h
-  renderer/pool/pool_sizes.h
-  renderer/pool/tree_options.h
   renderer/pool/tree_shape.h
   renderer/produce/content.h
-  renderer/produce/content_program.h
   renderer/produce/cpu_brick.h
-  renderer/produce/oracle.h
-  renderer/produce/producer.h
-  renderer/produce/transfer_function.h
-  renderer/produce/volume_field.h
+  renderer/produce/volume.h
   renderer/renderer.h
-  renderer/renderer_options.h
-  renderer/shadow/column_mask.h
   renderer/shadow/shadow_base.h
-  renderer/shadow/shadow_options.h
   renderer/shadow_renderer.h
   renderer/view/view.h
-  scenes/builtin/builtin.h
   scenes/load.h
-  scenes/node_selection.h
   scenes/scene.h
   scenes/snapshot.h
   scenes/volume/volume.h
   voxelizer/bit_grid.h
-  voxelizer/files/voxel_files.h
   voxelizer/files/voxel_writer.h
   voxelizer/grid.h
   voxelizer/methods/voxelize_tiles.h

@@ -41,7 +41,7 @@ constexpr const char* triangle_text = R"(#version 450 core
 out vec4 color;
 void main() { color = vec4(1.0, 0.0, 0.0, 1.0); })";
 
-/// What this program had before there was a Cairn in it.
+/// The program without Cairn: a renderer that draws a picture and a triangle.
 class OwnRenderer {
 public:
     OwnRenderer() {
@@ -51,7 +51,7 @@ public:
         glCreateTextures(GL_TEXTURE_2D, 1, &texture_);
         glTextureStorage2D(texture_, 1, GL_RGBA8, width, height);
         glTextureParameteri(texture_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-        // States that are set once, and that nobody else may change.
+        // States that are set once, and that other code must leave as they are.
         glViewport(0, 0, width, height);
         glBindVertexArray(vertex_array_);
         glEnable(GL_CULL_FACE);
@@ -61,7 +61,7 @@ public:
         glTextureSubImage2D(texture_, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
     }
 
-    /// Binds its program and its texture for each pass, as Cairn leaves others.
+    /// Draws a pass. It binds its program and its texture, because Cairn changes these bindings.
     void draw() const {
         glBindTextureUnit(0, texture_);
         glProgramUniform1f(picture_program_, 0, 1.0F);
@@ -119,7 +119,7 @@ int show(const char* scene, const char* output) {
     OwnRenderer own;
     const std::array<GLint, 7> before = own_states();
 
-    // The context stays this program's. All that Cairn makes must end before the context does.
+    // The context stays this program's. Cairn's objects must be destroyed before it.
     const auto context =
         cairn::gl::adopt_context(reinterpret_cast<void* (*)(const char*)>(glfwGetProcAddress));
     const cairn::renderer::ContentSource source(scene);

@@ -1,5 +1,5 @@
-// own_producer OUTPUT.ppm: a picture of a formula. A producer of one's own fills bricks where rays ask for
-// them; an oracle of one's own says where nothing is, so that nothing is asked for there.
+// own_producer OUTPUT.ppm: a picture of a formula. A custom producer fills the bricks that rays need; a
+// custom oracle reports tiles that are empty, so that no bricks are produced for them.
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <cairn/base/error.h>
 #include <cairn/gl/context.h>
 #include <cairn/optics/camera.h>
-#include <cairn/renderer/pool/tree_options.h>
+#include <cairn/renderer/pool/tree_shape.h>
 #include <cairn/renderer/produce/content.h>
 #include <cairn/renderer/produce/cpu_brick.h>
 #include <cairn/renderer/renderer.h>
@@ -25,7 +25,7 @@ namespace {
 /// A wall around the gyroid sin x cos y + sin y cos z + sin z cos x = 0, in a ball. World: the cube [0, 1]^3.
 struct Gyroid {
     static constexpr double waves = 4.0 * 6.283185307179586;  // radians per world unit
-    static constexpr double wall = 0.25;  // half of its thickness, as values of the formula
+    static constexpr double wall = 0.25;  // greatest absolute value of the formula in the wall
     static constexpr double radius = 0.48;
 
     static double value(const glm::dvec3& p) {
@@ -49,7 +49,7 @@ struct Gyroid {
         if (length == 0.0) return glm::dvec3(0.0);
         return gradient * ((value(p) < 0.0 ? -1.0 : 1.0) / length);
     }
-    /// Conservative: no slope of the value is steeper than 2 waves along an axis.
+    /// Conservative, because the slope of the value along an axis is at most 2 waves.
     static bool misses_ball_of(const glm::dvec3& middle, double reach) {
         return from_ball(middle) > reach ||
                std::abs(value(middle)) - 2.0 * std::sqrt(3.0) * waves * reach > wall;
@@ -63,7 +63,7 @@ public:
         grid_.resolution = glm::ivec3(shape_.resolution());
     }
 
-    // The content: what the tree shows.
+    // The content, which the tree shows.
     [[nodiscard]] const renderer::TreeShape& shape() const override { return shape_; }
     [[nodiscard]] renderer::Oracle& oracle() override { return *this; }
     [[nodiscard]] renderer::Producer& producer() override { return *this; }
@@ -90,9 +90,9 @@ public:
     }
 
     // The producer.
-    std::vector<renderer::Produced> produce(std::span<const renderer::BrickRequest> requests,
-                                            const renderer::BrickPool& pool) override {
-        std::vector<renderer::Produced> all;
+    std::vector<renderer::ProducedTile> produce(std::span<const renderer::BrickRequest> requests,
+                                                const renderer::BrickPool& pool) override {
+        std::vector<renderer::ProducedTile> all;
         for (const auto& [tile, slot] : requests) {
             const renderer::CpuBrick brick = make_brick(tile);
             brick.send_to(pool, slot);

@@ -1,5 +1,5 @@
 // voxelize_to_vdb SCENE RESOLUTION OUTPUT.vdb: the voxels that a scene's surface touches, for OpenVDB. Runs
-// in bounded memory, so that the grid may be larger than what fits at once.
+// in bounded memory, so that the grid may be larger than memory.
 
 #include <cstdio>
 #include <cstdlib>
@@ -8,7 +8,7 @@
 #include <cairn/gl/context.h>
 #include <cairn/scenes/load.h>
 #include <cairn/scenes/snapshot.h>
-#include <cairn/voxelizer/files/voxel_files.h>
+#include <cairn/voxelizer/files/voxel_writer.h>
 #include <cairn/voxelizer/methods/voxelize_tiles.h>
 
 namespace voxelizer = cairn::voxelizer;
@@ -23,7 +23,8 @@ int main(int argc, char** argv) try {
     const cairn::scenes::Snapshot snapshot = cairn::scenes::take_snapshot(scene);
     const voxelizer::Grid grid = voxelizer::grid_around(snapshot.bounds, std::atoi(argv[2]));
 
-    // The triangles on the grid's lattice; on the GPU; and by the parts of the grid that they may touch.
+    // The triangles on the grid's lattice, their copy on the GPU, and an index of those that each part of the
+    // grid may touch.
     const voxelizer::Surface surface = voxelizer::build_surface(scene, snapshot, grid);
     const voxelizer::GpuSurface on_gpu = voxelizer::upload(surface);
     voxelizer::TriangleIndex index(surface);
@@ -32,7 +33,7 @@ int main(int argc, char** argv) try {
     const auto writer = voxelizer::make_voxel_writer(argv[3], grid);
     const voxelizer::TileStatistics statistics = voxelizer::voxelize_tiles(
         *exact, on_gpu, index, grid, [&](const voxelizer::VoxelTile& tile) { writer->add(tile); });
-    writer->finish();  // until here there is no file
+    writer->finish();  // the file appears here
     std::printf("%llu voxels\n", static_cast<unsigned long long>(statistics.occupied));
     return 0;
 } catch (const cairn::Error& error) {

@@ -9,7 +9,7 @@
 namespace cairn::fuzz {
 
 void gltf(Bytes file) {
-    // Whether it is a .glb is decided by its first bytes, not by its name.
+    // The first bytes of a file, not its name, decide whether it is a .glb.
     const std::string path = scratch_file("scene.glb", file);
     try {
         const scenes::Scene scene = scenes::load(path);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the seeds of fuzz/corpus that are made, not found: small files that are right, and files that lie about
-themselves. Run it again after adding one; what it writes is the same each time. The .glb of scenes that need an encoder
-(Draco, meshopt), and what fuzzers have found, lie beside them."""
+"""Writes the made seeds of fuzz/corpus: small valid files, and files whose headers contradict their contents. Run it
+again after adding one; it writes the same files each time. The .glb files that need an encoder (Draco, meshopt), and
+files that fuzzers have found, lie beside them."""
 import base64
 import gzip
 import json

@@ -10,7 +10,7 @@
 namespace cairn::fuzz {
 
 void options(Bytes lines) {
-    // Some options look at the file that they name. No fuzzer's business is outside its own folder.
+    // Some options look at the file that they name. A fuzzer must stay in its folder.
     std::filesystem::current_path(scratch_folder());
     std::vector<std::string> arguments(1);
     for (const std::uint8_t byte : lines) {

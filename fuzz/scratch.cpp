@@ -35,7 +35,7 @@ const std::filesystem::path& scratch_folder() {
 
 std::string scratch_file(const std::string& name, Bytes bytes) {
     const std::filesystem::path path = scratch_folder() / name;
-    std::filesystem::remove(path);  // some file systems wait for the disk when a file is written over
+    std::filesystem::remove(path);  // writing over a file waits for the disk on some file systems
     std::ofstream stream(path, std::ios::binary);
     stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     stream.close();

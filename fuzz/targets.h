@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <span>
 
-/// What fuzzers feed: each entry point takes any bytes, and returns when Cairn has either understood them or
-/// refused them with the error that its header promises. Anything else ends the program: a crash, a
-/// sanitizer's report, an exception of another kind, or broken_promise().
+/// Entry points for fuzzers. Each takes any bytes, and returns once Cairn has either accepted them or refused
+/// them with the error that its header promises. Any other result ends the program: a crash, a sanitizer's
+/// report, an exception of another kind, or broken_promise().
 ///
-/// libFuzzer calls one of them per program (libfuzzer.cpp); tests/fuzz runs all of them over corpus/.
+/// A libFuzzer program calls one entry point (libfuzzer.cpp); tests/fuzz runs all of them over corpus/.
 namespace cairn::fuzz {
 
 using Bytes = std::span<const std::uint8_t>;
@@ -18,7 +18,7 @@ void uri(Bytes text);       ///< a URI of a glTF file, resolved and decoded
 void options(Bytes lines);  ///< a command line, one argument per line, parsed and not run
 void transfer(Bytes text);  ///< the text of a transfer function
 
-/// Ends the program: an entry point saw something that a header excludes.
+/// Ends the program, because an entry point met a result that a header excludes.
 [[noreturn]] void broken_promise(const char* what);
 
 }  // namespace cairn::fuzz

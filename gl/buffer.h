@@ -17,9 +17,10 @@ class Buffer {
 public:
     Buffer() = default;
 
-    /// @param name  says in an error what did not fit.
-    /// @throws Error  Fault::memory when the driver refuses the size; asks before it is too late with
-    ///                `Limits::shader_storage_bytes` for what a shader must see whole.
+    /// @param name  what the buffer holds, for the text of an error.
+    /// @throws Error  Fault::memory if the driver refuses the size. A driver may accept a buffer that is
+    ///                larger than what a shader can see of it: compare the size with
+    ///                `Limits::shader_storage_bytes` first.
     Buffer(std::size_t size_bytes, const std::string& name);
 
     /// A buffer that holds a copy of `data`; at least 16 bytes long, so that it can always be bound.
@@ -32,7 +33,8 @@ public:
 
     void write(std::size_t offset_bytes, const void* data, std::size_t size_bytes);
     void read(std::size_t offset_bytes, void* data, std::size_t size_bytes) const;
-    void fill(std::uint32_t word);  ///< the whole buffer
+    /// Fills the whole buffer.
+    void fill(std::uint32_t word);
     void fill(std::size_t offset_bytes, std::size_t size_bytes, std::uint32_t word);
 
     template <typename T>

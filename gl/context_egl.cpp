@@ -48,7 +48,7 @@ struct Egl {
     decltype(&eglMakeCurrent) make_current;
 };
 
-/// Displays that need no window system: each device that EGL knows, then Mesa's surfaceless platform.
+/// Displays that need no window system: each device of EGL, then Mesa's surfaceless platform.
 std::vector<EGLDisplay> candidate_displays(const Egl& egl) {
     std::vector<EGLDisplay> displays;
     const auto get_display = egl.extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");

@@ -1,9 +1,9 @@
-#include "gl/debug.h"
-
 #include <utility>
 
 #include <fmt/format.h>
 #include <glad/gl.h>
+
+#include "gl/context.h"
 
 namespace cairn::gl {
 namespace {

@@ -6,13 +6,13 @@
 
 namespace cairn::gl {
 
-/// Sets what decides whether and how a fragment reaches its target to OpenGL's defaults, and puts back what
-/// was set before when it goes out of scope: render passes deep in a library neither inherit state nor leave
-/// any behind.
+/// Sets the state that decides whether and how a fragment reaches its target to OpenGL's defaults, and
+/// restores the caller's state when the guard goes out of scope: render passes deep in a library neither
+/// inherit state nor leave any behind.
 ///
-/// Covers tests, blending (of the first two draw buffers), logic operation, colour mask, culling, which side
-/// is the front, polygon mode, widths of lines and points, viewport, draw framebuffer, vertex array, and
-/// texture and sampler of unit 0.
+/// The guard covers tests, blending (of the first two draw buffers), logic operation, colour mask, culling,
+/// which side is the front, polygon mode, widths of lines and points, viewport, draw framebuffer, vertex
+/// array, and texture and sampler of unit 0.
 class DrawStateGuard {
 public:
     DrawStateGuard();

@@ -9,8 +9,8 @@
 
 namespace cairn::gl {
 
-/// A shared library opened when asked for. It stays loaded until the process ends: drivers keep threads and
-/// thread-local destructors that must not outlive their code.
+/// A shared library that is opened at run time. It stays loaded until the process ends: drivers keep threads
+/// and thread-local destructors that must not outlive their code.
 class DynamicLibrary {
 public:
     DynamicLibrary(std::initializer_list<const char*> names, const std::string& package) {
@@ -22,7 +22,7 @@ public:
                     "install it (Debian: " + package + ") or choose another ContextOptions::kind");
     }
 
-    /// @throws Error when the library has no such function.
+    /// @throws Error (Fault::context) if the library has no such function.
     template <typename Function>
     [[nodiscard]] Function function(const char* name) const {
         void* const address = dlsym(handle_, name);

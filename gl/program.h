@@ -29,7 +29,7 @@ public:
     void set(const char* name, const glm::vec3& value) const;
     void set(const char* name, const glm::vec4& value) const;
     void set(const char* name, const glm::mat4& value) const;
-    /// An array, from its first element on.
+    /// Sets the elements of an array, from its first one on.
     void set(const char* name, std::span<const glm::ivec4> values) const;
 
 private:
@@ -37,18 +37,17 @@ private:
 };
 
 /// Compiles and links one compute shader.
-/// @throws Error (Fault::context) with the driver's message, its file numbers replaced by names.
+/// @throws Error (Fault::context) with the driver's message, in which names replace file numbers.
 [[nodiscard]] Program build_compute(const ShaderSource& source, std::string_view name,
                                     const Defines& defines = {});
 
-/// Compiles and links a vertex and a fragment shader, and a geometry shader when its name is not empty.
+/// Compiles and links a vertex and a fragment shader, and a geometry shader if its name is not empty.
 [[nodiscard]] Program build_raster(const ShaderSource& source, std::string_view vertex,
                                    std::string_view fragment, std::string_view geometry = {},
                                    const Defines& defines = {});
 
-/// Dispatches at least `threads` threads of the bound compute program, folded over x and y where one axis is
-/// too short: shaders take their index as gl_GlobalInvocationID.x + gl_GlobalInvocationID.y *
-/// gl_NumWorkGroups.x * group_size.
+/// Dispatches at least `threads` threads of the bound compute program, folded over x and y if one axis is too
+/// short. A shader computes the number of its thread by thread_index() of shaders/common/thread.glsl.
 void dispatch_threads(std::size_t threads, unsigned group_size);
 
 }  // namespace cairn::gl

@@ -10,13 +10,13 @@
 namespace cairn::gl {
 
 /// An entry point (<verb>.<stage>.glsl), and the sets of definitions with which programs are built from it.
-/// A library lists its own, so that a test can compile them all.
+/// Each library lists its entry points, so that a test can compile all variants.
 struct ShaderVariants {
     std::string name;
     std::vector<Defines> defines = {{}};
 };
 
-/// One set for each value of one macro.
+/// One set of definitions per value of one macro.
 [[nodiscard]] inline std::vector<Defines> each_value(const std::string& macro,
                                                      std::initializer_list<int> values) {
     std::vector<Defines> sets;

@@ -4,15 +4,16 @@
 
 namespace cairn::gl {
 
-/// Measures what the driver does between `start()` and `stop()` on its own clock: two GL_TIMESTAMPs, so that
-/// timers may overlap. (llvmpipe answers a GL_TIME_ELAPSED that begins before the context's first draw with
-/// the time since the machine started.)
+/// Measures the time between `start()` and `stop()` by the driver's clock: two GL_TIMESTAMPs, so that timers
+/// may overlap. (llvmpipe answers a GL_TIME_ELAPSED that begins before the context's first draw with the time
+/// since the machine started.)
 class Timer {
 public:
     Timer();
     void start() const;
     void stop() const;
-    [[nodiscard]] double milliseconds() const;  ///< waits for the driver
+    /// Waits for the driver to pass both points.
+    [[nodiscard]] double milliseconds() const;
 
 private:
     QueryHandle begin_;

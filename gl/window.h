@@ -11,7 +11,8 @@ struct GLFWwindow;
 
 namespace cairn::gl {
 
-/// A window with an OpenGL 4.5 core context (GLFW). One at a time, on the main thread, as GLFW asks.
+/// A window with an OpenGL 4.5 core context (GLFW). There can be one window at a time, on the main thread, as
+/// GLFW asks.
 class Window : public Context {
 public:
     /// The GLFW handle, for input callbacks.
@@ -21,7 +22,7 @@ public:
     virtual void swap_and_poll() = 0;
 };
 
-/// @throws Error (Fault::context) when there is no display, or its driver offers no OpenGL 4.5.
+/// @throws Error (Fault::context) if there is no display, or its driver offers no OpenGL 4.5.
 [[nodiscard]] std::unique_ptr<Window> create_window(const std::string& title, glm::ivec2 size,
                                                     bool debug = false);
 

@@ -11,14 +11,15 @@ struct Camera {
     glm::dvec3 eye{0.0, 0.0, 1.0};
     glm::dvec3 target{0.0};
     glm::dvec3 up{0.0, 1.0, 0.0};
-    double yfov = 0.785398163397448;  ///< radians, the whole angle, in (0, pi)
+    double yfov = 0.785398163397448;  ///< whole vertical angle, radians, in (0, pi)
     bool operator==(const Camera&) const = default;
 };
 
-/// Looks at the whole of the bounds from the front, above and to the right.
+/// A camera that sees the whole of the bounds, from the front, above and the right.
+/// @param aspect  width of the picture over its height.
 [[nodiscard]] Camera framing_camera(const scenes::Bounds& bounds, double aspect);
 
-/// Where a camera that moved from `before` to `now` will be after as much time again, if it goes on alike.
+/// The next position of a camera that moved from `before` to `now`, if it makes the same move again.
 [[nodiscard]] Camera extrapolated(const Camera& before, const Camera& now);
 
 }  // namespace cairn::optics

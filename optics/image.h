@@ -3,22 +3,23 @@
 #include <cstdint>
 #include <vector>
 
-/// Pictures, as the renderer, the reference and the command mean them alike.
+/// Pictures: one type for the renderer, the reference and the command.
 namespace cairn::optics {
 
-/// sRGB-encoded RGBA, row 0 at the top; alpha is the coverage by the scene (the background is already blended
-/// in).
+/// A picture of sRGB-encoded RGBA, row 0 at the top. Alpha is the share of a pixel that the scene covers; the
+/// background is already blended in.
 struct Image {
     int width = 0;
     int height = 0;
     std::vector<std::uint8_t> rgba;
 };
 
-/// What of the light each pixel of a picture gets.
+/// The share of the light that arrives at each pixel of a picture.
 struct LightShares {
     int width = 0;
     int height = 0;
-    /// In [0, 1], row 0 at the top; 0 where the surface turns its back to the light; -1: nothing is there.
+    /// One share per pixel, in [0, 1], row 0 at the top: 0 if the surface turns its back to the light; -1 if
+    /// the pixel shows no surface.
     std::vector<float> shares;
 };
 

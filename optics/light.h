@@ -6,59 +6,64 @@
 
 namespace cairn::optics {
 
-/// What of a positional light there is around its middle.
+/// The shape of a positional light around its middle.
 enum class LightShape : std::uint8_t {
-    sphere,     ///< of Light::radius, which may be 0: a point
-    rectangle,  ///< middle +- half_u +- half_v; it shines to both sides
-    disk,       ///< the ellipse with these half axes
+    sphere,     ///< a sphere of Light::radius; a point if that is 0
+    rectangle,  ///< middle +- half_u +- half_v; shines to both sides
+    disk,       ///< the ellipse with half axes half_u and half_v
 };
 
-/// One light, white by default. It shades as its middle does; its extent makes shadows soft, where a view
-/// asks for more than one shadow ray.
+/// One light, white by default. Surfaces are shaded as if all light came from its middle; its extent makes
+/// shadows soft if a view asks for more than one shadow ray.
 struct Light {
     bool positional = false;
-    glm::dvec3 position{0.0};            ///< of the middle, world, when positional
-    glm::dvec3 towards{0.4, 0.8, 0.45};  ///< direction to the light, when not
+    /// Middle of a positional light, world.
+    glm::dvec3 position{0.0};
+    /// Direction to a directional light, world; any length but 0.
+    glm::dvec3 towards{0.4, 0.8, 0.45};
     LightShape shape = LightShape::sphere;
-    double radius = 0.0;     ///< of a sphere
-    glm::dvec3 half_u{0.0};  ///< of a rectangle or a disk
-    glm::dvec3 half_v{0.0};
-    double angle = 0.0;  ///< of a directional light: radians from its middle to its edge, [0, pi / 2)
+    double radius = 0.0;     ///< radius of a sphere, world units
+    glm::dvec3 half_u{0.0};  ///< half axis of a rectangle or disk, world
+    glm::dvec3 half_v{0.0};  ///< the other half axis
+    /// Angle from the middle of a directional light to its edge: radians, [0, pi / 2).
+    double angle = 0.0;
     glm::vec3 color{1.0F};
-    float ambient = 0.25F;  ///< light from everywhere, as a share of the light's own
+    /// Light from everywhere, as a share of `color`.
+    float ambient = 0.25F;
     bool operator==(const Light&) const = default;
 };
 
-/// Whether it has an extent, without which there are no soft shadows.
+/// Whether a light has an extent. A light without one throws no soft shadows.
 [[nodiscard]] inline bool has_extent(const Light& light) {
     if (!light.positional) return light.angle > 0.0;
     if (light.shape == LightShape::sphere) return light.radius > 0.0;
     return light.half_u != glm::dvec3(0.0) || light.half_v != glm::dvec3(0.0);
 }
 
-/// Unit, from a point of the world to its middle.
+/// Unit vector from a point of the world to the light's middle.
 [[nodiscard]] inline glm::dvec3 direction_to(const Light& light, const glm::dvec3& point) {
     return glm::normalize(light.positional ? light.position - point : light.towards);
 }
 
-/// A rectangle at `position` that faces `target`: along cross(half_u, half_v), with two edges level where
-/// `up` is vertical. All else is as in Light.
+/// A rectangle at `position` that faces `target`: cross(half_u, half_v) points there. Two edges are level if
+/// `up` is vertical. All other fields are as in Light.
 ///
-/// @param width   from edge to edge along half_u, world units; `height` along half_v.
-/// @throws Error  Fault::usage when a size is not positive, or the target is the position.
+/// @param width   length from edge to edge along half_u, world units; `height`: along half_v.
+/// @throws Error  Fault::usage if a size is not positive, or the target is the position.
 [[nodiscard]] Light aimed_light(const glm::dvec3& position, const glm::dvec3& target, double width,
                                 double height, const glm::dvec3& up = {0.0, 1.0, 0.0});
 
-/// Light space of a rectangle: its middle is the origin, half_u lies along +x, half_v along +y, and what
-/// cross(half_u, half_v) points to has a positive z. World units.
+/// Transforms the world to the light space of a rectangle: the rectangle's middle is the origin, half_u lies
+/// along +x, half_v along +y, and points on the side that cross(half_u, half_v) points to have a positive z.
+/// Lengths stay world units.
 ///
-/// @throws Error  Fault::usage for a light that is no rectangle, or when a half axis has no length, or they
+/// @throws Error  Fault::usage if the light is not a rectangle, a half axis has no length, or the half axes
 ///                are not at a right angle.
 [[nodiscard]] glm::dmat4 light_from_world(const Light& light);
 
-/// Half the width and the height of a rectangle, world units.
+/// Half the width and half the height of a rectangle, world units.
 ///
-/// @throws Error  Fault::usage for a light that is no rectangle.
+/// @throws Error  Fault::usage if the light is not a rectangle.
 [[nodiscard]] glm::dvec2 half_size(const Light& light);
 
 }  // namespace cairn::optics

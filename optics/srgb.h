@@ -7,8 +7,8 @@
 
 #include <glm/glm.hpp>
 
-/// The curve of sRGB (IEC 61966-2-1), which pictures are encoded with. The shaders have a twin in
-/// march/shade.glsl.
+/// The curve of sRGB (IEC 61966-2-1), with which pictures are encoded. Its twins in the shaders are
+/// srgb_from_linear() of march/picture.glsl and linear_from_srgb() of voxelize/surface_color.glsl.
 namespace cairn::optics {
 
 /// @param linear  clamped to [0, 1].
@@ -28,14 +28,14 @@ template <std::floating_point Real>
                                     : std::pow((encoded + Real(0.055)) / Real(1.055), Real(2.4));
 }
 
-/// The nearest of 256 steps.
+/// Encodes to the nearest of 256 steps.
 /// @param linear  clamped to [0, 1].
 template <std::floating_point Real>
 [[nodiscard]] std::uint8_t srgb8_from_linear(Real linear) {
     return std::uint8_t(std::lround(Real(255.0) * srgb_from_linear(linear)));
 }
 
-/// Channel by channel, in double.
+/// Encodes each channel, in double.
 [[nodiscard]] inline glm::u8vec3 srgb8_from_linear(const glm::vec3& linear) {
     return {srgb8_from_linear(double(linear.r)), srgb8_from_linear(double(linear.g)),
             srgb8_from_linear(double(linear.b))};

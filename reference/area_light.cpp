@@ -1,5 +1,3 @@
-#include "reference/area_light.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include "base/error.h"
+#include "reference/shadow_truth.h"
 
 namespace cairn::reference {
 namespace {
@@ -59,7 +58,8 @@ optics::Light placed(const optics::Light& light, const ImageTracer& tracer) {
     return sphere;
 }
 
-/// Where a light with a place meets the ray from `point` that stands for (x, y) of the unit square.
+/// The point of a positional light that the sample (x, y) of the unit square stands for, as seen from
+/// `point`.
 glm::dvec3 sample_of(const optics::Light& light, const glm::dvec3& point, double x, double y) {
     if (light.shape == optics::LightShape::rectangle)
         return light.position + (2.0 * x - 1.0) * light.half_u + (2.0 * y - 1.0) * light.half_v;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Embree 3 (Debian 12) or 4 (Ubuntu 24.04) behind the calls that both have in one shape or the other.
+/// Embree 3 (Debian 12) or 4 (Ubuntu 24.04) behind the same functions.
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -19,7 +19,7 @@ inline void intersect(RTCScene scene, RTCRayHit& hit) {
 inline void occluded(RTCScene scene, RTCRay& ray) {
     rtcOccluded1(scene, &ray);
 }
-/// Eight rays that go nearly the same way; `valid` holds -1 for each that counts.
+/// Traces eight rays in nearly the same direction; `valid` holds -1 for each ray that counts.
 inline void intersect8(const int* valid, RTCScene scene, RTCRayHit8& hits) {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
@@ -43,7 +43,7 @@ inline void occluded(RTCScene scene, RTCRay& ray) {
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene, &context, &ray);
 }
-/// Eight rays that go nearly the same way; `valid` holds -1 for each that counts.
+/// Traces eight rays in nearly the same direction; `valid` holds -1 for each ray that counts.
 inline void intersect8(const int* valid, RTCScene scene, RTCRayHit8& hits) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

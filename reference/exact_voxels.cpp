@@ -49,7 +49,7 @@ public:
         return out;
     }
 
-    /// None for a triangle that no mask cuts.
+    /// The mask of a triangle; none if no mask cuts it.
     [[nodiscard]] std::optional<ExactMask> mask(std::size_t triangle) const {
         std::array<glm::vec2, 3> texcoords;
         std::array<std::uint32_t, 3> colors;

@@ -12,12 +12,13 @@
 
 namespace cairn::reference {
 
-/// The truth: every voxel of a region whose closed box meets a closed triangle of the surface, as the alpha
-/// masks leave it. Embree finds candidates, exact predicates in 128-bit integers decide; runs on all cores.
+/// The true voxels of a region: those whose closed box meets the part of a closed triangle of the surface
+/// that the alpha mask leaves. Embree finds candidates; exact predicates in 128-bit integers decide. Runs on
+/// all cores.
 class ExactVoxels {
 public:
     /// Refers to the surface, which must outlive it.
-    /// @throws Error  Fault::memory when Embree cannot hold the triangles.
+    /// @throws Error  Fault::memory if Embree cannot hold the triangles.
     explicit ExactVoxels(const voxelizer::Surface& surface);
     ExactVoxels(const ExactVoxels&) = delete;
     ExactVoxels& operator=(const ExactVoxels&) = delete;
@@ -38,9 +39,9 @@ private:
 
 struct Comparison {
     std::uint64_t occupied = 0;               ///< voxels that are occupied in the truth
-    std::uint64_t missing = 0;                ///< occupied in the truth only
-    std::uint64_t extra = 0;                  ///< occupied in ours only
-    std::vector<glm::ivec3> first_different;  ///< at most eight, by z, y, x
+    std::uint64_t missing = 0;                ///< voxels occupied in the truth only
+    std::uint64_t extra = 0;                  ///< voxels occupied in `ours` only
+    std::vector<glm::ivec3> first_different;  ///< at most eight, ordered by z, y, x
 };
 
 /// Both grids must have one size.

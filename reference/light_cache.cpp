@@ -15,7 +15,7 @@
 namespace cairn::reference {
 namespace {
 
-/// Of the files, and of the sampling: older answers are not found again.
+/// Version of the files and of the sampling. Answers of older versions are not found.
 constexpr std::uint64_t version = 2;
 
 struct FileHead {
@@ -25,7 +25,7 @@ struct FileHead {
 };
 static_assert(sizeof(FileHead) == 24);
 
-/// What follows the header: one per point.
+/// An entry per point, after the header.
 struct Entry {
     double visible = 0.0;
     double standard_error = 0.0;
@@ -82,7 +82,7 @@ void add_mask(Hasher& hasher, const scenes::Scene& scene, const scenes::Primitiv
     hasher.add_list(std::span(image.rgba));
 }
 
-/// What its shape does not use does not count.
+/// Adds the fields that the light's shape uses.
 void add_light(Hasher& hasher, const optics::Light& light) {
     hasher.add(std::uint8_t(light.positional));
     if (!light.positional) {

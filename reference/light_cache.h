@@ -10,13 +10,13 @@
 
 #include <glm/glm.hpp>
 
-#include "reference/area_light.h"
+#include "reference/shadow_truth.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 
 namespace cairn::reference {
 
-/// All that an answer of area_light_visibility() depends on.
+/// All arguments that an answer of area_light_visibility() depends on.
 struct LightQuestion {
     const scenes::Scene& scene;
     const scenes::Snapshot& snapshot;
@@ -26,16 +26,17 @@ struct LightQuestion {
     const AreaLightOptions& options;
 };
 using LightHash = std::array<std::uint64_t, 2>;
-/// XXH3, 128 bits. What cannot change the answer does not change it: colours, names, threads.
+/// The XXH3 hash of a question, 128 bits. It leaves out what cannot change the answer: colours, names,
+/// threads.
 [[nodiscard]] LightHash hash_of(const LightQuestion& question);
 
-/// One answer in a file of a folder, under its question's hash.
+/// Keeps one answer in a file of a folder, whose name is the hash of the question.
 class LightCache {
 public:
-    /// Makes the folder. @throws Error  Fault::usage when it cannot.
+    /// Creates the folder. @throws Error  Fault::usage if that fails.
     LightCache(const std::filesystem::path& folder, const LightHash& hash);
 
-    /// Nothing when there is no file, or it is not whole.
+    /// The answer; nothing if there is no file, or the file is not whole.
     [[nodiscard]] std::optional<std::vector<LightVisibility>> load(std::size_t points) const;
     /// @throws Error  as OutputFile does.
     void save(std::span<const LightVisibility> answer) const;

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "renderer/frame/frame_loop.h"
+#include "renderer/mesh/mix.h"
 #include "shaders/interop/march.h"
 
 namespace cairn::renderer {
@@ -32,7 +33,7 @@ Frame Renderer::render(const View& view, const Request& request) {
 }
 
 LightFrame Renderer::light(const View& view, const Progress& progress) {
-    if (!loop_->marches_surfaces()) {
+    if (!loop_->shows_surface()) {
         throw Error(Fault::usage, "view", "the light at a volume is not that of one place",
                     "render its picture");
     }
@@ -46,7 +47,7 @@ std::uint64_t Renderer::prefetch(const View& next, Milliseconds budget) {
     return loop_->prefetch(next, deadline_in(budget));
 }
 
-Prefetched Renderer::prefetch_finer(Milliseconds budget) {
+PrefetchResult Renderer::prefetch_finer(Milliseconds budget) {
     return loop_->prefetch_finer(deadline_in(budget));
 }
 

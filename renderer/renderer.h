@@ -9,44 +9,53 @@
 #include "gl/shader_source.h"
 #include "optics/image.h"
 #include "renderer/frame/frame_statistics.h"
-#include "renderer/mesh/mix.h"
+#include "renderer/march/march_options.h"
+#include "renderer/pool/tree_shape.h"
 #include "renderer/produce/content.h"
-#include "renderer/renderer_options.h"
 #include "renderer/view/view.h"
 
 namespace cairn::renderer {
 
 class FrameLoop;
+struct Mix;  // renderer/mesh/mix.h
+
+/// How a renderer works. No picture depends on it. The shape of the tree belongs to the content
+/// (TreeOptions).
+struct RendererOptions {
+    PoolSizes pools = {};
+    MarchOptions march = {};
+    bool operator==(const RendererOptions&) const = default;
+};
 
 /// Called after each pass with the share of pixels that are done, in [0, 1].
 using Progress = std::function<void(double)>;
 
-/// What of a picture is wanted, and how long it may take.
+/// Which part of a picture is wanted, and how long it may take.
 struct Request {
-    /// Only these rows, which are those of the whole picture, bit for bit: for a caller that has other things
-    /// to do between them. The image is as high as there are rows.
+    /// Renders only these rows. They equal those of the whole picture, bit for bit, and the image has just
+    /// these rows: for a caller that has other things to do between them. None: the whole picture.
     std::optional<Rows> rows = std::nullopt;
-    /// Nothing is produced once so much time has passed since the call; first comes what most rays ask for.
-    /// What is missing then is shown by the nearest ancestor that has a brick, or not at all. Rays are never
-    /// cut short: a frame takes at least as long as marching it once. Without a budget a frame ends when
-    /// nothing is missing.
+    /// Production stops when this much time has passed since the call; until then, the tiles that most rays
+    /// ask for come first. A tile that is still missing is shown by its nearest ancestor that has a brick, or
+    /// not at all. Rays are never cut short: a frame takes at least as long as marching it once. None: the
+    /// frame ends when nothing is missing.
     ///
-    /// Requested again for the same view and rows, a frame goes on where the one before stopped, until the
-    /// picture is that of a request without a budget: FrameStatistics::converged. What the frames used for
-    /// this view since the first of them is not given up, so pools too small for the view leave some of it at
-    /// a lower level of detail and come to rest.
+    /// A frame requested again for the same view and rows goes on where the one before stopped, until the
+    /// picture is that of a request without a budget (FrameStatistics::converged). The pools keep what these
+    /// frames have used since the first of them. So if the pools are too small for the view, some of it stays
+    /// at a lower level of detail, and the picture comes to rest.
     std::optional<Milliseconds> budget = std::nullopt;
-    /// Of frames without a budget; may be empty.
+    /// Called by frames without a budget; may be empty.
     Progress progress = {};
 };
 
-/// A picture, and what it took.
+/// A picture, and the counters of its frame.
 struct Frame {
     optics::Image image;
     FrameStatistics statistics;
 };
 
-/// Per pixel what arrives of the light, and what it took to know.
+/// The share of the light that arrives at each pixel, and the counters of the frame.
 struct LightFrame {
     optics::LightShares light;
     FrameStatistics statistics;
@@ -56,13 +65,13 @@ struct LightFrame {
 /// (renderer/open_content.h). Only what rays prove visible is voxelized, no finer than a pixel shows. Bricks
 /// stay in the pools from one frame to the next. Needs the context that was current at its construction.
 ///
-/// The picture depends on the view (and the mix) alone: not on the pools' sizes, nor on what earlier frames
-/// left in them. So the finished rows of the last view are kept (up to 64 MiB) and given again, without
-/// marching, for as long as the view does not change.
+/// The picture depends on the view (and the mix) alone: not on the sizes of the pools, nor on what earlier
+/// frames left in them. So the renderer keeps the finished rows of the last view (up to 64 MiB), and returns
+/// them without marching for as long as the view does not change.
 class Renderer {
 public:
-    /// @throws Error  Fault::usage for pools or march options that cannot work with the content;
-    /// Fault::memory when the pools do not fit.
+    /// @throws Error  Fault::usage if pools or march options do not suit the content; Fault::memory if the
+    ///                pools do not fit.
     explicit Renderer(std::unique_ptr<Content> content, const RendererOptions& options = {},
                       const gl::ShaderSource& shaders = {});
     Renderer(Renderer&&) noexcept;
@@ -71,29 +80,30 @@ public:
     Renderer& operator=(const Renderer&) = delete;
     ~Renderer();
 
-    /// For all pictures from now on; an empty mix for voxels alone.
+    /// Draws meshes beside the voxels in all pictures from now on; an empty mix: voxels alone.
     void set_mix(const Mix& mix);
 
-    /// @throws Error (Fault::usage)  if the view is invalid, the picture does not have the rows, or a budget
-    /// meets TileQueries::blocks.
+    /// @throws Error (Fault::usage)  if the view is invalid, if the picture does not have the rows, or if a
+    ///                               budget is combined with TileQueries::blocks.
     Frame render(const View& view, const Request& request = {});
 
-    /// What arrives of the light at the pixels of the same rays, instead of colours.
-    /// @throws Error (Fault::usage)  as render() does, and for volumes, whose light is not that of one place.
+    /// Renders with the same rays as render(), but returns shares of the light instead of colours.
+    /// @throws Error (Fault::usage)  as render() does, and for volumes: a pixel of a volume gathers light
+    ///                               from many places.
     LightFrame light(const View& view, const Progress& progress = {});
 
-    /// Produces bricks for a view that may be asked for next, where it finds room that the last frame does
-    /// not need, until the budget is spent. Changes no picture.
+    /// Produces bricks for a view that may be asked for next, in room that the last frame does not need,
+    /// until the budget is spent. Changes no picture.
     /// @throws Error (Fault::usage)  as render() does with a budget.
     /// @return  bricks produced.
     std::uint64_t prefetch(const View& next, Milliseconds budget);
 
-    /// Produces for the last view one level finer than it shows, for a camera that moves closer: some bands
-    /// of the view's rows in each call, and only what finds room beside all that this view has used since it
-    /// was first rendered. A call takes some milliseconds longer than the budget.
-    Prefetched prefetch_finer(Milliseconds budget);
+    /// Produces bricks one level finer than the last view shows, for a camera that moves closer. Each call
+    /// does some bands of the view's rows, and only in room beside all that this view has used since it was
+    /// first rendered. A call takes some milliseconds longer than the budget.
+    PrefetchResult prefetch_finer(Milliseconds budget);
 
-    /// The next frame is marched, whatever its view: for measurements.
+    /// Marches the next frame even if its view is the last one: for measurements.
     void forget_picture();
 
 private:

@@ -48,8 +48,8 @@ std::vector<gl::ShaderVariants> of_producers() {
           TreeShape{3, 27}, TreeShape{3, 81}, TreeShape{2, 64}}) {
         for (const bool has_color : {false, true}) {
             for (const gl::Defines& mask : gl::each_value("HAS_MASK", {0, 1})) {
-                for (const gl::Defines& tells : gl::each_value("TELL_EMPTY", {0, 1}))
-                    surface.push_back(joined(joined(shape.defines(has_color), mask), tells));
+                for (const gl::Defines& finds : gl::each_value("FINDS_EMPTY", {0, 1}))
+                    surface.push_back(joined(joined(shape.defines(has_color), mask), finds));
             }
         }
     }

@@ -4,10 +4,12 @@
 
 #include "base/error.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/open_content.h"
 #include "renderer/renderer.h"
 #include "renderer/shadow/map_shadows.h"
 #include "renderer/shadow/pyramid_shadows.h"
+#include "renderer/shadow/shadow_checks.h"
 
 namespace cairn::renderer {
 namespace {

@@ -26,7 +26,7 @@ void add_displacements(std::vector<glm::vec3>& vectors, const std::vector<glm::v
         vectors[i] += weight * displacements[i];
 }
 
-/// Adds four influences; tells whether any counts.
+/// Adds four influences. @return whether any of them counts.
 bool blend(glm::dmat4& sum, const SkinWeights& vertex, std::span<const glm::dmat4> matrices) {
     bool any = false;
     for (int c = 0; c < 4; ++c) {

@@ -11,7 +11,7 @@ namespace cairn::scenes {
 
 struct DeformedVertices {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;  ///< of length 1 or 0; empty if the primitive has no normals
+    std::vector<glm::vec3> normals;  ///< length 1 or 0; empty if the primitive has no normals
 };
 
 // The order of all operations here is part of the contract, because shaders/voxelize/deform.comp.glsl follows
@@ -23,7 +23,7 @@ struct DeformedVertices {
 
 /// Moves vertices by the weighted sum of their joints' matrices (glTF 2.0, 3.7.3.3); results are in world
 /// space. A vertex whose weights are all 0 follows the skin's first joint.
-/// @param world_from_mesh  one a joint: world_from_joint * joint_from_mesh.
+/// @param world_from_mesh  one matrix per joint: world_from_joint * joint_from_mesh.
 void skin(const Primitive& primitive, std::span<const glm::dmat4> world_from_mesh,
           DeformedVertices& vertices);
 

@@ -7,12 +7,12 @@
 
 namespace cairn::scenes {
 
-/// Adds a node named "ground" with a horizontal square, white and facing up, for the shadows of what stands
-/// on it. It lies a thousandth of the bounds' longest side under them, around their middle, and is twice as
-/// wide as that side is long.
-/// @param bounds       of what stands on it; at all times, where it moves. Nothing is added where they are
-///                     empty.
-/// @param scene_index  of the scenes that the file describes; none: its default scene.
+/// Adds a node named "ground": a horizontal square, white and facing up, for the shadows of the things that
+/// stand on it. The square is twice as wide as the longest side of their bounds, and lies under their middle,
+/// a thousandth of that side below them.
+/// @param bounds       bounds of the things that stand on the ground, over all times if they move. If they
+/// are empty, nothing is added.
+/// @param scene_index  which of the file's scenes gets the ground; none: its default scene.
 void add_ground(Scene& scene, const Bounds& bounds, std::optional<int> scene_index = std::nullopt);
 
 }  // namespace cairn::scenes

@@ -1,6 +1,5 @@
 #include "scenes/load.h"
 
-#include "scenes/builtin/builtin.h"
 #include "scenes/gltf/read_gltf.h"
 
 namespace cairn::scenes {

@@ -1,9 +1,8 @@
-#include "scenes/node_selection.h"
-
 #include <charconv>
 #include <optional>
 
 #include "base/error.h"
+#include "scenes/snapshot.h"
 
 namespace cairn::scenes {
 namespace {

@@ -13,17 +13,17 @@ namespace cairn::scenes {
 /// All nodes of a scene at one moment.
 struct Pose {
     std::vector<glm::dmat4> world_from_node;  ///< one matrix per node
-    /// Per node, the weights that the animation gives its mesh; empty if it gives none, and the node's own
-    /// count.
+    /// Per node, the morph weights that the animation gives its mesh; empty if it gives none: then the node's
+    /// weights count.
     std::vector<std::vector<float>> morph_weights;
 };
 
 [[nodiscard]] glm::dmat4 matrix_of(const Trs& trs);
 
-/// Evaluates one animation at many moments; after the first it takes no memory.
+/// Evaluates one animation at many moments. Only the first evaluation allocates memory.
 class Poser {
 public:
-    /// @param animation  null: none, the rest pose. Both must outlive the poser.
+    /// @param animation  null: the rest pose. Scene and animation must outlive the poser.
     Poser(const Scene& scene, const Animation* animation);
 
     /// Evaluates the animation and multiplies down the node hierarchy, in double; valid until the next call.
@@ -43,17 +43,17 @@ private:
     Pose pose_;
 };
 
-/// Where the meshes of a node stand, beside or instead of its instance `instance` (-1: of none).
+/// The transform of a node's mesh: at the node's instance `instance`, or at the node itself if that is -1.
 [[nodiscard]] glm::dmat4 world_from_instance(const Node& node, const glm::dmat4& world_from_node,
                                              int instance);
 
-/// World from the mesh space of a skin, for one of its joints.
+/// The transform to the world from the mesh space of a skin, by one of its joints.
 [[nodiscard]] glm::dmat4 world_by_joint(const Skin& skin, const Pose& pose, std::size_t joint);
 
-/// The weights in force for the node's mesh: animated, else the node's, else the mesh's.
+/// The morph weights of a node's mesh in a pose: the animation's, else the node's, else the mesh's.
 [[nodiscard]] std::span<const float> morph_weights_of(const Scene& scene, const Pose& pose, std::size_t node);
 
-/// The pose of one moment.
+/// The pose at one moment.
 [[nodiscard]] Pose take_pose(const Scene& scene, const Animation* animation, double seconds);
 
 /// The value of a channel, `width` numbers; rotations have length 1. Times outside the keys are clamped to

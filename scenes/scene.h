@@ -9,10 +9,10 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-/// A glTF 2.0 scene in memory, as its file shares it: meshes once, nodes and instances referring to them.
+/// A glTF 2.0 scene in memory. As in the file, each mesh is there once, and nodes and instances refer to it.
 ///
 /// Units are the file's (metres by glTF's rule), right-handed, +Y up. Indices into the vectors of `Scene` are
-/// ints, -1 = none; the loader has checked them all, so they never need checking again.
+/// ints, -1 = none; the loader has checked them all, so no caller needs to.
 namespace cairn::scenes {
 
 /// How a texture coordinate outside [0, 1] is brought back (glTF 2.0, sampler.wrapS and wrapT).
@@ -28,7 +28,7 @@ struct Image {
 
 /// A base-colour texture: an image and how it is addressed.
 struct Texture {
-    int image = -1;  ///< into Scene::images
+    int image = -1;  ///< index into Scene::images
     Wrap wrap_s = Wrap::repeat;
     Wrap wrap_t = Wrap::repeat;
 };
@@ -37,14 +37,14 @@ enum class AlphaMode : std::uint8_t {
     opaque,
     /// A texel whose alpha is under the cutoff is a hole in the surface.
     mask,
-    blend,  ///< counts as surface
+    blend,  ///< taken for opaque surface
 };
 
 struct Material {
     std::string name;
     glm::vec4 base_color{1.0F};  ///< linear
-    int texture = -1;            ///< into Scene::textures
-    /// texture coordinate = uv_from_mesh * (u, v, 1): KHR_texture_transform, identity without it.
+    int texture = -1;            ///< index into Scene::textures
+    /// Texture coordinate = uv_from_mesh * (u, v, 1): KHR_texture_transform, identity without it.
     glm::mat3 uv_from_mesh{1.0F};
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5F;
@@ -54,26 +54,27 @@ struct Material {
 enum class Topology : std::uint8_t { points, lines, triangles };
 
 struct MorphTarget {
-    std::vector<glm::vec3> positions;  ///< a displacement per vertex, or empty
-    std::vector<glm::vec3> normals;    ///< a displacement per vertex, or empty
+    std::vector<glm::vec3> positions;  ///< displacements, one per vertex, or empty
+    std::vector<glm::vec3> normals;    ///< displacements, one per vertex, or empty
 };
 
 struct SkinWeights {
-    glm::u16vec4 joints{0};  ///< into Skin::joints
-    /// The sum over all sets of a vertex (Primitive::more_skin) is 1, normalized when loaded; or all are 0.
+    glm::u16vec4 joints{0};  ///< indices into Skin::joints
+    /// The sum of the weights over all sets of a vertex (Primitive::more_skin) is 1, normalized when loaded;
+    /// or all weights are 0.
     glm::vec4 weights{0.0F};
 };
 
-/// Vertices and what they span. Strips, fans and loops are unrolled and missing indices written out when
-/// loaded, so `indices` always holds 1, 2 or 3 entries per point, line or triangle. An optional attribute
-/// is empty if the file has none, else it has one entry per vertex.
+/// Vertices, and the points, lines or triangles that they span. Strips, fans and loops are unrolled and
+/// missing indices written out when loaded, so `indices` always holds 1, 2 or 3 entries per point, line or
+/// triangle. An optional attribute is empty if the file has none, else it has one entry per vertex.
 struct Primitive {
     Topology topology = Topology::triangles;
-    int material = -1;  ///< into Scene::materials; -1: white, opaque
+    int material = -1;  ///< index into Scene::materials; -1: white, opaque
     std::vector<std::uint32_t> indices;
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
-    /// The set that the material's base colour texture uses, before uv_from_mesh.
+    /// Texture coordinates of the set that the material's base colour texture uses, before uv_from_mesh.
     std::vector<glm::vec2> texcoords;
     std::vector<glm::u8vec4> colors;  ///< COLOR_0: linear RGBA, 255 = 1
     std::vector<SkinWeights> skin;
@@ -93,7 +94,7 @@ struct Mesh {
     std::vector<float> morph_weights;
 };
 
-/// Translation, rotation, scale: applied scale first.
+/// A transform: scale, then rotation, then translation.
 struct Trs {
     glm::dvec3 translation{0.0};
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
@@ -103,27 +104,28 @@ struct Trs {
 struct Node {
     std::string name;
     std::vector<int> children;
-    Trs trs;  ///< used when `matrix` is null
+    Trs trs;  ///< used if `matrix` is null
     std::unique_ptr<glm::dmat4> matrix;
     int mesh = -1;
     int skin = -1;
     int camera = -1;
     int light = -1;
-    /// EXT_mesh_gpu_instancing: the mesh is drawn once per instance; if empty, once, where the node is.
+    /// EXT_mesh_gpu_instancing: the mesh is drawn once per instance; if there are none, once, where the node
+    /// is.
     std::vector<Trs> instances;
-    std::vector<float> morph_weights;  ///< overrides the mesh's when not empty
+    std::vector<float> morph_weights;  ///< replace the mesh's if not empty
 };
 
 struct Skin {
-    std::vector<int> joints;                  ///< nodes
+    std::vector<int> joints;                  ///< indices of nodes
     std::vector<glm::dmat4> joint_from_mesh;  ///< inverse bind matrices, one per joint
 };
 
 enum class Path : std::uint8_t { translation, rotation, scale, weights };
 enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
 
-/// Key frames of one property of one node. `values` holds `width` floats a key (3, 4, or the count of morph
-/// targets); for cubic_spline three times that: in-tangent, value, out-tangent.
+/// Key frames of one property of one node. `values` holds `width` floats per key (3, 4, or the count of morph
+/// targets); for cubic_spline three times as many: in-tangent, value, out-tangent.
 struct Channel {
     int node = -1;
     Path path = Path::translation;
@@ -136,29 +138,29 @@ struct Channel {
 struct Animation {
     std::string name;
     std::vector<Channel> channels;
-    double duration = 0.0;  ///< seconds: the last key of any channel
+    double duration = 0.0;  ///< time of the last key of any channel, seconds
 };
 
-/// glTF camera; looks along -Z of its node.
+/// A glTF camera, which looks along -Z of its node.
 struct Camera {
     std::string name;
     bool perspective = true;
-    double yfov = 0.8;  ///< radians, perspective only
-    double ymag = 1.0;  ///< half height, orthographic only
+    double yfov = 0.8;  ///< whole vertical angle, radians; perspective only
+    double ymag = 1.0;  ///< half the height; orthographic only
     double znear = 0.01;
     double zfar = 0.0;  ///< 0 = infinite
 };
 
-/// KHR_lights_punctual; shines along -Z of its node.
+/// A light of KHR_lights_punctual, which shines along -Z of its node.
 struct Light {
     enum class Type : std::uint8_t { directional, point, spot };
     std::string name;
     Type type = Type::point;
     glm::vec3 color{1.0F};
     float intensity = 1.0F;
-    float range = 0.0F;  ///< 0 = infinite
-    float inner_cone = 0.0F;
-    float outer_cone = 0.785398F;
+    float range = 0.0F;            ///< 0 = infinite
+    float inner_cone = 0.0F;       ///< radians from the axis; spot only
+    float outer_cone = 0.785398F;  ///< radians from the axis; spot only
 };
 
 struct SceneRoots {
@@ -179,7 +181,7 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<SceneRoots> scenes;  ///< at least one
     int default_scene = 0;
-    /// Optional extensions that are not supported, and the like; each warning once.
+    /// Warnings about optional extensions that are not supported, and the like; each text once.
     std::vector<std::string> warnings;
 };
 

@@ -17,10 +17,10 @@ namespace {
 /// More than this many placed primitives are a damaged file's doing: few bytes can ask for billions.
 constexpr std::size_t most_items = 4'000'000;
 
-/// What is found once of a primitive, however often it is placed.
+/// Data that is computed once per primitive, however often it is placed.
 struct Extent {
-    std::vector<std::uint32_t> used;  ///< the vertices that its indices name; empty = all
-    /// Of these, in mesh space; only for positions as the file has them.
+    std::vector<std::uint32_t> used;  ///< vertices that the indices name; empty = all
+    /// Bounds of these vertices in mesh space, for positions as they are in the file.
     Bounds bounds;
 };
 

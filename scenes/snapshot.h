@@ -1,8 +1,8 @@
 #pragma once
-
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -11,7 +11,7 @@
 
 namespace cairn::scenes {
 
-/// An axis-aligned box in world space; empty when low > high.
+/// An axis-aligned box in world space; empty if low > high.
 struct Bounds {
     glm::dvec3 low{1e300};
     glm::dvec3 high{-1e300};
@@ -23,16 +23,17 @@ struct Bounds {
     [[nodiscard]] bool empty() const { return low.x > high.x; }
 };
 
-/// One mesh primitive at one place. What is shared stays shared: the spans point into the Scene, or into the
-/// Snapshot where a skin or morph targets moved the vertices.
+/// One mesh primitive at one place. The spans point into the Scene or, if a skin or morph targets moved the
+/// vertices, into the Snapshot.
 struct Item {
     const Primitive* primitive = nullptr;
     std::span<const glm::vec3> positions;  ///< mesh space; one per vertex
-    std::span<const glm::vec3> normals;    ///< mesh space; empty when the file has none
+    std::span<const glm::vec3> normals;    ///< mesh space; empty if the file has none
     glm::dmat4 world_from_mesh{1.0};
-    int node = -1;         ///< into Scene::nodes
-    int instance = -1;     ///< into the node's instances; -1: in place
-    bool skinned = false;  ///< the node's skin moved `positions`, into the world
+    int node = -1;      ///< index into Scene::nodes
+    int instance = -1;  ///< index into the node's instances; -1: the node has none
+    /// Whether the node's skin moved `positions`, which are then in world space.
+    bool skinned = false;
 };
 
 struct PlacedLight {
@@ -44,13 +45,14 @@ struct PlacedCamera {
     glm::dmat4 world_from_camera{1.0};
 };
 
+/// A moment of a scene of the file.
 struct When {
-    double seconds = 0.0;            ///< clamped to each channel's keys, as glTF asks
+    double seconds = 0.0;            ///< clamped to the keys of each channel, as glTF asks
     std::optional<int> animation;    ///< none: the rest pose
     std::optional<int> scene_index;  ///< none: the file's default scene
 };
 
-/// One scene of a file at one moment: what stands where.
+/// One scene of a file at one moment: its primitives, lights and cameras, with their places.
 struct Snapshot {
     std::vector<Item> items;
     std::vector<PlacedLight> lights;
@@ -61,29 +63,44 @@ struct Snapshot {
     std::uint64_t line_count = 0;
     std::uint64_t point_count = 0;
 
-    /// Vertices that skins or morph targets moved; `items` point in here.
+    /// Vertices that skins or morph targets moved; spans of `items` point into these.
     std::vector<std::vector<glm::vec3>> deformed;
 };
 
 /// Evaluates animation, morph targets and skins at one moment. The scene must outlive the snapshot.
 ///
-/// @throws Error  Fault::usage when the animation or the scene index does not exist; Fault::input when a
-/// transform
-///                gives a vertex that is not finite.
+/// @throws Error  Fault::usage if the animation or the scene index does not exist; Fault::input if a
+///                transform gives a vertex that is not finite.
 [[nodiscard]] Snapshot take_snapshot(const Scene& scene, const When& when = {});
 
-/// The animation that a moment names; null: none. @throws Error  Fault::usage when it does not exist.
+/// The animation that a moment names; null if it names none.
+/// @throws Error  Fault::usage if the animation does not exist.
 [[nodiscard]] const Animation* animation_of(const Scene& scene, const When& when);
 
-/// The moments of an animation's frames: 0, 1 / rate, ... and its end, in seconds. Just 0 without an
-/// animation.
-/// @throws Error  Fault::usage when the animation does not exist, the rate is not positive, or there would be
+/// The moments of an animation's frames, in seconds: 0, 1 / rate, ... and the animation's end. Only 0 if
+/// `when` names no animation.
+/// @throws Error  Fault::usage if the animation does not exist, the rate is not positive, or there would be
 ///                more than a million frames.
 [[nodiscard]] std::vector<double> frame_times(const Scene& scene, const When& when, double frames_per_second);
 
-/// Encloses the scene at every frame (of frame_times), so that one grid serves them all. Between two frames
-/// a vertex may swing past it by a little; grid_around leaves a voxel for that.
+/// Bounds of the scene over all frames of frame_times, so that one grid serves them all. Between two frames a
+/// vertex may swing a little out of the bounds; grid_around leaves a voxel for that.
 /// @throws Error  as take_snapshot and frame_times do.
 [[nodiscard]] Bounds bounds_over_animation(const Scene& scene, const When& when, double frames_per_second);
+
+/// One flag per node of Scene::nodes.
+using NodeSelection = std::vector<bool>;
+
+/// The nodes that `wanted` names, with their descendants. A text that is a name selects all nodes of that
+/// name; else a whole number is an index into Scene::nodes.
+/// @throws Error  Fault::usage if a text is neither; the way out lists the nodes.
+[[nodiscard]] NodeSelection select_nodes(const Scene& scene, std::span<const std::string> wanted);
+
+/// All nodes that are not selected.
+[[nodiscard]] NodeSelection other_nodes(const NodeSelection& selection);
+
+/// The items of the selected nodes, with their bounds and counts, without lights and cameras. The whole
+/// snapshot must outlive the part, whose items point into the same vertices.
+[[nodiscard]] Snapshot part_of(const Snapshot& whole, const NodeSelection& selection);
 
 }  // namespace cairn::scenes

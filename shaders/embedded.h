@@ -5,7 +5,7 @@
 
 namespace cairn::shaders {
 
-/// One file of this folder as it was when the library was built; the name is relative to it
+/// One file of the folder shaders/ as it was when the library was built; the name is relative to that folder
 /// ("march/march.glsl").
 struct EmbeddedFile {
     std::string_view name;

@@ -34,15 +34,15 @@ struct BitGrid {
     [[nodiscard]] bool operator==(const BitGrid&) const = default;
 };
 
-/// Along which axes the levels of a pyramid halve (Forest et al. 2009, section 2.3, Figure 4).
+/// The axes along which the levels of a pyramid halve (Forest et al. 2009, section 2.3, Figure 4).
 enum class Reduction : std::uint8_t {
-    /// Figure 4a: every level keeps all slices of z, so that one look-up reads a column.
-    xy,
+    xy,   ///< Figure 4a: all levels keep all slices of z; one look-up reads a column
     xyz,  ///< Figure 4b: the standard octree
 };
 
 /// One bit per voxel at every level, each level the OR of the finer one (Forest et al. 2009, section 2.3).
-/// Level 0 is the finest; sizes halve along the axes of the reduction, rounded up, until all of these are 1.
+/// Level 0 is the finest. Sizes halve along the axes of the reduction, rounded up, until they are 1 along all
+/// of these axes.
 class BitmaskPyramid {
 public:
     BitmaskPyramid() = default;
@@ -55,10 +55,10 @@ private:
     std::vector<BitGrid> levels_;
 };
 
-/// The pyramid computed on the CPU.
+/// Computes a pyramid on the CPU.
 [[nodiscard]] BitmaskPyramid build_pyramid(BitGrid finest, Reduction reduction = Reduction::xyz);
 
-/// Size of the next coarser level: the same size when there is none.
+/// Size of the next coarser level; the same size if there is none.
 [[nodiscard]] glm::ivec3 coarser_size(const glm::ivec3& size, Reduction reduction);
 
 }  // namespace cairn::voxelizer

@@ -47,7 +47,7 @@ glm::ivec3 voxels_over(const glm::dvec3& extent, double voxel_size, double extra
     if (!(voxel_size > 0.0) || !std::isfinite(voxel_size)) {
         throw Error(Fault::usage, "voxel size", fmt::format("{} is not above 0", voxel_size));
     }
-    // What a quotient of doubles may be off must not add a voxel: 1.1 / 0.1 is 11.000000000000002.
+    // The rounding error of a quotient of doubles must not add a voxel: 1.1 / 0.1 is 11.000000000000002.
     const glm::dvec3 voxels =
         glm::max(glm::ceil(extent / voxel_size * (1.0 - 0x1p-40)) + extra, glm::dvec3(1.0));
     if (glm::all(glm::lessThanEqual(voxels, glm::dvec3(limit)))) return voxels;

@@ -12,7 +12,7 @@
 #include "app/options/options.h"
 #include "app/options/view_options.h"
 #include "optics/light.h"
-#include "renderer/shadow/shadow_options.h"
+#include "renderer/shadow/shadow_base.h"
 
 namespace cairn::app {
 

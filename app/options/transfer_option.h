@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer/produce/transfer_function.h"
+#include "renderer/produce/volume.h"
 
 namespace cairn::app {
 

@@ -12,7 +12,7 @@
 #include "app/options/parse.h"
 #include "app/options/voxel_rows.h"
 #include "base/error.h"
-#include "renderer/pool/tree_options.h"
+#include "renderer/pool/tree_shape.h"
 #include "shaders/interop/pool.h"
 
 namespace cairn::app {

@@ -9,7 +9,7 @@
 #include "app/options/option_table.h"
 #include "app/options/options.h"
 #include "app/options/transfer_option.h"
-#include "renderer/renderer_options.h"
+#include "renderer/renderer.h"
 #include "renderer/view/view.h"
 #include "scenes/snapshot.h"
 

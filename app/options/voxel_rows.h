@@ -7,7 +7,7 @@
 #include "app/options/names.h"
 #include "app/options/option_table.h"
 #include "renderer/march/march_options.h"
-#include "renderer/produce/transfer_function.h"
+#include "renderer/produce/volume.h"
 #include "shaders/interop/volume.h"
 
 /// Rows of the options that say how voxels are rendered, for every verb that has them. `member` is

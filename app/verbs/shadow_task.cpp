@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "optics/light.h"
-#include "renderer/pool/tree_options.h"
+#include "renderer/pool/tree_shape.h"
 
 namespace cairn::app {
 namespace {

@@ -3,7 +3,6 @@
 #include "app/options/shadow_options.h"
 #include "app/subject/scene_input.h"
 #include "renderer/renderer.h"
-#include "scenes/node_selection.h"
 #include "scenes/snapshot.h"
 
 namespace cairn::app {

@@ -18,6 +18,7 @@
 #include "app/terminal/report.h"
 #include "app/verbs/verbs.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/renderer.h"
 
 namespace cairn::app {

@@ -16,7 +16,7 @@
 #include "app/verbs/verbs.h"
 #include "app/verbs/voxelization.h"
 #include "base/error.h"
-#include "voxelizer/files/voxel_files.h"
+#include "voxelizer/files/voxel_writer.h"
 #include "voxelizer/files/write_npy.h"
 
 namespace cairn::app {

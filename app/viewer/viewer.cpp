@@ -211,7 +211,7 @@ void Viewer::grow() {
 
 /// Produces bricks for a camera that moves closer.
 void Viewer::prefetch_finer() {
-    const renderer::Prefetched ahead = renderer_.prefetch_finer(Milliseconds(ahead_ms));
+    const renderer::PrefetchResult ahead = renderer_.prefetch_finer(Milliseconds(ahead_ms));
     may_prefetch_ = ahead.more;
     bricks_produced_ += ahead.bricks;
 }

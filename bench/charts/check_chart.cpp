@@ -13,7 +13,6 @@
 #include "bench/trials/cost.h"
 #include "gl/context.h"
 #include "reference/exact_voxels.h"
-#include "scenes/builtin/builtin.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "voxelizer/files/voxel_tiles.h"

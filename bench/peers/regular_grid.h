@@ -5,7 +5,7 @@
 #include "gl/buffer.h"
 #include "gl/handle.h"
 #include "gl/program.h"
-#include "renderer/produce/volume_field.h"
+#include "renderer/produce/volume.h"
 #include "renderer/renderer.h"
 
 namespace cairn::bench {

@@ -7,7 +7,7 @@
 #include "renderer/march/front_cells.h"
 #include "renderer/pool/tree.h"
 #include "renderer/pool/tree_shape.h"
-#include "renderer/produce/oracle.h"
+#include "renderer/produce/content.h"
 #include "shaders/interop/march.h"
 
 namespace cairn::bench {

@@ -8,7 +8,7 @@
 
 #include "base/clock.h"
 #include "bench/peers/pcf_shadow.h"
-#include "reference/area_light.h"
+#include "reference/shadow_truth.h"
 #include "renderer/shadow_renderer.h"
 
 namespace cairn::bench {

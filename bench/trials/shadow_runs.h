@@ -7,7 +7,7 @@
 
 #include "bench/trials/shadow_scene.h"
 #include "gl/shader_source.h"
-#include "renderer/pool/tree_options.h"
+#include "renderer/pool/tree_shape.h"
 #include "renderer/shadow_renderer.h"
 
 namespace cairn::bench {

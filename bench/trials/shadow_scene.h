@@ -5,7 +5,6 @@
 
 #include "optics/light.h"
 #include "renderer/shadow_renderer.h"
-#include "scenes/node_selection.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "bench/trials/real_scenes.h"
-#include "reference/area_light.h"
+#include "reference/shadow_truth.h"
 #include "scenes/load.h"
 #include "scenes/transform.h"
 

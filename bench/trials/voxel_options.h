@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "renderer/pool/tree_options.h"
-#include "renderer/produce/transfer_function.h"
+#include "renderer/pool/tree_shape.h"
+#include "renderer/produce/volume.h"
 #include "renderer/renderer.h"
 
 namespace cairn::bench {

@@ -17,7 +17,7 @@ Band make_band(const View& view, Content& content, const TreeShape& shape) {
                     "make the content a surface, with TreeOptions::mips");
     }
     const voxelizer::Grid& grid = content.grid();
-    const Place eye = place_of(view, view.camera.eye, grid);
+    const TilePoint eye = tile_point(view, view.camera.eye, grid);
     if (shape.has_windows()) {
         band.windows = windows_around(shape, eye);
         drop_empty(band.windows, shape, content.oracle());
@@ -25,10 +25,10 @@ Band make_band(const View& view, Content& content, const TreeShape& shape) {
     band.view = march_view(view, grid, shape, band.windows.empty() ? nullptr : &band.windows.back());
     band.view.surface_color = content.uniform_color();
     if (band.windows.empty()) return band;
-    const Place light = place_of(view, view.light.position, grid);
-    band.marched_windows =
-        march_windows(band.windows, shape, eye, view.light.positional ? &light : nullptr, view.light.towards);
-    band.marched_windows.back().eye = band.view.eye;  // nearer to the scene, where the eye is far from it
+    const TilePoint light = tile_point(view, view.light.position, grid);
+    band.ray_windows = make_ray_windows(band.windows, shape, eye, view.light.positional ? &light : nullptr,
+                                        view.light.towards);
+    band.ray_windows.back().eye = band.view.eye;  // nearer to the scene, where the eye is far from it
     return band;
 }
 
@@ -40,9 +40,9 @@ void set_rows(Band& band, Rows rows, int shown, std::uint32_t background) {
 }
 
 int draw_mix(Band& band, const Mix& mix, const voxelizer::Grid& grid, int row) {
-    const MarchSpace space{grid.origin, grid.voxel_size};
+    const ViewSpace space{grid.origin, grid.voxel_size};
     int end = band.view.height;
-    band.mix = MarchMix{};
+    band.mix = MixTextures{};
     if (mix.meshes != nullptr) {
         const MeshSurface mesh = mix.meshes->draw_surface(band.view, space, row);
         band.mix.mesh_nearest = mesh.nearest;
@@ -50,7 +50,7 @@ int draw_mix(Band& band, const Mix& mix, const voxelizer::Grid& grid, int row) {
         band.mix.mesh_first_row = mesh.first_row;
         band.mix.mesh_shadows = mix.mesh_shadows;
         band.mix.voxels_hidden = mix.voxels_hidden;
-        band.mix.mesh_own_height = mix.meshes_are_voxelized ? MESH_OWN_HEIGHT : 0.0F;
+        band.mix.mesh_self_shadow_height = mix.meshes_are_voxelized ? MESH_SELF_SHADOW_HEIGHT : 0.0F;
         end = std::min(end, mesh.first_row + mesh.rows);
     }
     if (mix.proxy != nullptr) {

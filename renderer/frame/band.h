@@ -13,25 +13,27 @@
 
 namespace cairn::renderer {
 
-/// Rows of a picture that are marched at once, and all that their rays are told.
+/// Rows of a picture that are marched at once, and all that their rays need.
 struct Band {
     interop::MarchView view;
-    std::vector<Window> windows;  ///< around the eye; none where the shape has none
-    std::vector<interop::MarchWindow> marched_windows;
-    MarchMix mix;
-    bool is_blended = false;  ///< rays see two mips at once
+    std::vector<Window> windows;                    ///< windows around the eye; empty if the tree has none
+    std::vector<interop::MarchWindow> ray_windows;  ///< the windows as the shaders read them
+    MixTextures mix;
+    bool is_blended = false;  ///< rays see two mips of a brick at once
 };
 
-/// A band of the view, still without rows and mix.
-/// @throws Error (Fault::usage) for a view that floats cannot tell, and for one that asks for blended levels
-/// of detail of bricks without mips.
+/// Makes a band of the view, without rows and mix.
+/// @throws Error (Fault::usage) if floats cannot hold the view, or if it asks for blended levels of detail
+///                              and bricks have no mips.
 [[nodiscard]] Band make_band(const View& view, Content& content, const TreeShape& shape);
 
+/// Sets the rows of the band, and what its pixels show.
 /// @param shown       SHOW_* of shaders/interop/march.h.
-/// @param background  a pixel that shows nothing.
+/// @param background  value of a pixel that shows nothing.
 void set_rows(Band& band, Rows rows, int shown, std::uint32_t background);
 
-/// Draws what the rays of a row meet beside voxels. @return the row behind the last that has been drawn.
+/// Draws what the rays of a row, and of the rows around it, meet beside voxels.
+/// @return  the row behind the last one that was drawn.
 [[nodiscard]] int draw_mix(Band& band, const Mix& mix, const voxelizer::Grid& grid, int row);
 
 }  // namespace cairn::renderer

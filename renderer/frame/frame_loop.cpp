@@ -47,21 +47,21 @@ void FrameLoop::check_request(const View& view, Rows rows) const {
             fmt::format("{} rows from row {} of a picture of {}", rows.count, rows.first, view.size.height),
             "ask for rows that the picture has");
     }
-    if (view.shadow.kind == ShadowQuality::Kind::cones && !marches_surfaces())
+    if (view.shadow.kind == ShadowQuality::Kind::cones && !shows_surface())
         throw Error(Fault::usage, "view", "shadow cones through a volume", "send it shadow rays");
 }
 
-/// What stays from frame to frame, and what makes room, must be known in full.
+/// For frames that keep bricks from frame to frame: they need reports of all bricks that a pass used.
 void FrameLoop::require_lists() const {
     if (tile_queries_ == TileQueries::list) return;
-    throw Error(Fault::usage, "tile queries", "blocks of pixels do not tell all that a frame used",
+    throw Error(Fault::usage, "tile queries", "blocks of pixels do not report all that a frame used",
                 "choose lists for frames within a budget and for prefetching");
 }
 
 optics::Image FrameLoop::render(const View& view, Rows rows, int shown,
                                 const std::function<void(double)>& progress) {
     check_request(view, rows);
-    // A frame that has all the time may give up what a pass has used: no ray goes back.
+    // A frame without a budget may evict what its earlier passes used: no ray goes back.
     frame_since_ = round_;
     cache_.keep_since(std::nullopt);
     return render_bands(view, rows, shown, [&](int row) {
@@ -76,10 +76,10 @@ optics::Image FrameLoop::render(const View& view, Rows rows, int shown,
 optics::Image FrameLoop::render_until(const View& view, Rows rows, int shown, Clock::time_point deadline) {
     require_lists();
     check_request(view, rows);
-    // What frames of these rows use is kept from the first of them on, so that they come to an end.
-    if (!(view == refined_.view && rows == refined_.rows)) refined_ = {view, rows, {}, {}};
-    if (!refined_.since) refined_.since = round_;
-    frame_since_ = *refined_.since;
+    // The pools keep what frames of these rows use from the first of them on, so that they come to an end.
+    if (!(view == refinement_.view && rows == refinement_.rows)) refinement_ = {view, rows, {}, {}};
+    if (!refinement_.since) refinement_.since = round_;
+    frame_since_ = *refinement_.since;
     cache_.keep_since(frame_since_);
     return render_bands(view, rows, shown, [&](int) { return Goal::until(deadline); });
 }
@@ -91,7 +91,7 @@ optics::Image FrameLoop::render_bands(const View& view, Rows rows, int shown,
     const PassCounters passes_before = passes_;
     statistics_ = FrameStatistics{};
     Band band = make_band(view, cache_.content(), cache_.shape());
-    if (!ahead_ || !(view == ahead_->view)) ahead_ = Ahead{view, round_};
+    if (!prefetch_state_ || !(view == prefetch_state_->view)) prefetch_state_ = PrefetchState{view, round_};
 
     const bool shows_light = shown == SHOW_LIGHT;
     optics::Image image;
@@ -103,7 +103,7 @@ optics::Image FrameLoop::render_bands(const View& view, Rows rows, int shown,
         const std::uint32_t background = shows_light ? std::bit_cast<std::uint32_t>(float(SHOWN_NOTHING))
                                                      : background_pixel(view.background);
         image = {view.size.width, rows.count, {}};
-        march_bands(band, rows, shown, background, goal_of, image);
+        run_bands(band, rows, shown, background, goal_of, image);
         if (!shows_light && statistics_.converged) picture_.keep(view, rows, image);
     }
     note_frame(cache_before, passes_before);
@@ -111,8 +111,8 @@ optics::Image FrameLoop::render_bands(const View& view, Rows rows, int shown,
     return image;
 }
 
-void FrameLoop::march_bands(Band& band, Rows rows, int shown, std::uint32_t background,
-                            const std::function<Goal(int)>& goal_of, optics::Image& image) {
+void FrameLoop::run_bands(Band& band, Rows rows, int shown, std::uint32_t background,
+                          const std::function<Goal(int)>& goal_of, optics::Image& image) {
     const int band_rows = Marcher::band_rows(band.view.width, band.view.height);
     const int end = rows.first + rows.count;
     int row = rows.first;
@@ -120,7 +120,7 @@ void FrameLoop::march_bands(Band& band, Rows rows, int shown, std::uint32_t back
         const int drawn_end = std::min(draw_mix(band, mix_, cache_.content().grid(), row), end);
         const int count = std::min(band_rows, drawn_end - row);
         set_rows(band, {row, count}, shown, background);
-        const Outcome outcome = run(band, goal_of(row));
+        const Outcome outcome = run_band(band, goal_of(row));
         if (outcome.stood_in) start_again_for_less(outcome);
         statistics_.converged = statistics_.converged && outcome.stood_in.value_or(0) == 0;
         std::vector<std::uint8_t> pixels = marcher_.read_image();
@@ -133,18 +133,18 @@ void FrameLoop::march_bands(Band& band, Rows rows, int shown, std::uint32_t back
     }
 }
 
-Outcome FrameLoop::run(Band& band, const Goal& goal) {
+Outcome FrameLoop::run_band(Band& band, const Goal& goal) {
     marcher_.begin_frame(band.view, cache_.tree(), cache_.pool(), band.is_blended, band.mix);
     const bool is_patient = goal.end == Goal::End::nothing_missing;
     PassKind kind = is_patient ? PassKind::patient : PassKind::progressive;
     Outcome outcome;
     for (;;) {
-        const PassResult pass = march(band, kind);
+        const PassResult pass = run_pass(band, kind);
         if (kind == PassKind::stand_in) outcome.stood_in = outcome.stood_in.value_or(0) + pass.stood_in;
         outcome.done = pass.done();
         if (is_patient && outcome.done) return outcome;
-        // What only the rays of stand-in passes have asked for, as shadow rays may, brings the next frame
-        // forward.
+        // Some queries come only from the rays of stand-in passes, for example of shadow rays. Their answers
+        // bring the next frame forward.
         const bool answered = produce(band, pass, goal, outcome.answered).count() > 0;
         outcome.answered = outcome.answered || answered;
         outcome.no_room = !answered && !pass.queries.empty();
@@ -154,20 +154,20 @@ Outcome FrameLoop::run(Band& band, const Goal& goal) {
             goal.progress(double(marcher_.band_pixels()) - waiting);
         }
         if (kind != PassKind::progressive) continue;
-        // Rays that only paused ask for nothing: prefetching, which has no other way to get on, waits for
-        // them.
-        const bool has_paused = goal.end == Goal::End::ahead && pass.queries.empty();
+        // Rays that only paused ask for nothing. Prefetching waits for them, because nothing else brings it
+        // forward.
+        const bool has_paused = goal.end == Goal::End::prefetch && pass.queries.empty();
         if (has_paused || (!outcome.no_room && Clock::now() <= goal.deadline)) continue;
-        if (goal.end == Goal::End::ahead) return outcome;
+        if (goal.end == Goal::End::prefetch) return outcome;
         kind = PassKind::stand_in;
     }
 }
 
-PassResult FrameLoop::march(Band& band, PassKind kind) {
+PassResult FrameLoop::run_pass(Band& band, PassKind kind) {
     const auto start = Clock::now();
     if (!band.windows.empty()) {
-        find_tiles(band.windows, cache_.tree(), band.marched_windows);
-        marcher_.set_windows(band.marched_windows);
+        find_tiles(band.windows, cache_.tree(), band.ray_windows);
+        marcher_.set_windows(band.ray_windows);
     }
     PassResult pass = marcher_.run_pass(round_, cache_.tree(), cache_.pool(), kind);
     passes_.march_ms += milliseconds_since(start);
@@ -179,18 +179,19 @@ PassResult FrameLoop::march(Band& band, PassKind kind) {
     return pass;
 }
 
-/// Answers what a pass asked for, as the goal has it.
-/// @param any_answered  by earlier passes of the run: the first answers come in any case.
+/// Answers the queries of a pass within the goal.
+/// @param any_answered  an earlier pass of the band has had answers. If none has, the first batch is answered
+///                      in any case.
 TileCache::Answer FrameLoop::produce(Band& band, const PassResult& pass, const Goal& goal,
                                      bool any_answered) {
     const auto start = Clock::now();
-    const bool is_ahead = goal.end == Goal::End::ahead;
+    const bool is_prefetch = goal.end == Goal::End::prefetch;
     TileCache::Answer answer =
         goal.end == Goal::End::nothing_missing
             ? cache_.answer(pass.queries)
             : cache_.answer_until(pass.queries, {.deadline = goal.deadline,
-                                                 .first_batch_in_any_case = is_ahead || !any_answered,
-                                                 .is_ahead = is_ahead});
+                                                 .first_batch_in_any_case = is_prefetch || !any_answered,
+                                                 .is_prefetch = is_prefetch});
     const auto before_windows = Clock::now();
     find_tiles_below(band, answer.parents);
     passes_.window_ms += milliseconds_since(before_windows);
@@ -199,8 +200,8 @@ TileCache::Answer FrameLoop::produce(Band& band, const PassResult& pass, const G
     return answer;
 }
 
-/// Rays that miss a tile of a window ask for children of its nearest ancestor: brings the tile itself, so
-/// that a deep view does not take a pass for each level.
+/// Rays that miss a tile of a window ask for children of its nearest ancestor. Subdivides down to the tile
+/// itself, so that a deep view does not take one pass per level.
 /// @param parents  entries that got children because rays asked.
 void FrameLoop::find_tiles_below(Band& band, const std::vector<std::uint32_t>& parents) {
     if (band.windows.empty() || parents.empty()) return;
@@ -213,17 +214,17 @@ void FrameLoop::find_tiles_below(Band& band, const std::vector<std::uint32_t>& p
     };
     for (const std::uint32_t entry : parents)
         add_children_of(entry);
-    find_tiles(band.windows, tree, band.marched_windows, [&](std::uint32_t entry) {
+    find_tiles(band.windows, tree, band.ray_windows, [&](std::uint32_t entry) {
         if (asked.contains(entry) && cache_.subdivide(entry)) add_children_of(entry);
     });
 }
 
-/// Frames of the same view that answer nothing more may do better from a new start, without what stood in at
-/// first.
+/// When frames of the same view answer no more queries, a new start may do better, without the bricks that
+/// stood in at first.
 void FrameLoop::start_again_for_less(const Outcome& outcome) {
-    if (outcome.answered || (refined_.stood_in && *outcome.stood_in >= *refined_.stood_in)) return;
-    refined_.since.reset();
-    refined_.stood_in = outcome.stood_in;
+    if (outcome.answered || (refinement_.stood_in && *outcome.stood_in >= *refinement_.stood_in)) return;
+    refinement_.since.reset();
+    refinement_.stood_in = outcome.stood_in;
 }
 
 std::uint64_t FrameLoop::prefetch(const View& next, Clock::time_point deadline) {
@@ -235,34 +236,34 @@ std::uint64_t FrameLoop::prefetch(const View& next, Clock::time_point deadline) 
     const std::uint64_t before = cache_.counters().bricks_produced;
     set_rows(band, {0, thin.size.height}, int(thin.show), background_pixel(thin.background));
     cache_.keep_since(frame_since_);
-    (void)run(band, Goal::ahead_until(deadline));
+    (void)run_band(band, Goal::prefetch_until(deadline));
     const std::uint64_t produced = cache_.counters().bricks_produced - before;
     prefetched_ += produced;
     return produced;
 }
 
-Prefetched FrameLoop::prefetch_finer(Clock::time_point deadline) {
+PrefetchResult FrameLoop::prefetch_finer(Clock::time_point deadline) {
     require_lists();
-    if (cache_.is_empty() || !ahead_) return {};
+    if (cache_.is_empty() || !prefetch_state_) return {};
     const std::uint64_t before = cache_.counters().bricks_produced;
-    const View fine = finer(ahead_->view, cache_.shape());
+    const View fine = finer(prefetch_state_->view, cache_.shape());
     std::optional<Band> band;
     Rows rows;
-    while (!ahead_->is_done && Clock::now() < deadline) {
-        if (!band_from_middle(fine, ahead_->bands_done, rows)) {
-            ahead_->is_done = true;
+    while (!prefetch_state_->is_done && Clock::now() < deadline) {
+        if (!band_from_middle(fine, prefetch_state_->bands_done, rows)) {
+            prefetch_state_->is_done = true;
             break;
         }
         if (!band) band = make_band(fine, cache_.content(), cache_.shape());
         set_rows(*band, rows, int(fine.show), background_pixel(fine.background));
-        cache_.keep_since(ahead_->since);
-        const Outcome outcome = run(*band, Goal::ahead_until(deadline));
-        if (outcome.done) ++ahead_->bands_done;
-        ahead_->is_done = !outcome.done && outcome.no_room;
+        cache_.keep_since(prefetch_state_->since);
+        const Outcome outcome = run_band(*band, Goal::prefetch_until(deadline));
+        if (outcome.done) ++prefetch_state_->bands_done;
+        prefetch_state_->is_done = !outcome.done && outcome.no_room;
     }
     const std::uint64_t produced = cache_.counters().bricks_produced - before;
     prefetched_ += produced;
-    return {produced, !ahead_->is_done};
+    return {produced, !prefetch_state_->is_done};
 }
 
 void FrameLoop::note_frame(const TileCache::Counters& cache_before, const PassCounters& passes_before) {

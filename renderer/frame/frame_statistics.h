@@ -5,44 +5,56 @@
 
 namespace cairn::renderer {
 
-/// Counters of one `render()`.
+/// Counters of one frame.
 struct FrameStatistics {
+    /// The whole frame.
     double milliseconds = 0.0;
-    std::uint64_t rays_launched =
-        0;           ///< of the pixel blocks that may see anything; with a proxy, of the pixels it covers
-    int passes = 0;  ///< ray-marching passes; 0 where the picture was known without any
+    /// Rays of the pixel blocks that may see anything; with a proxy, rays of the pixels that it covers.
+    std::uint64_t rays_launched = 0;
+    /// Ray-marching passes; 0 if the picture was kept, or the content is empty.
+    int passes = 0;
     std::uint64_t tile_queries = 0;  ///< misses that rays reported
-    std::uint64_t query_bytes = 0;   ///< read back from the GPU to know them, and what rays used
+    /// Bytes read back from the GPU: tile queries, and which bricks rays used.
+    std::uint64_t query_bytes = 0;
     std::uint64_t nodes_subdivided = 0;
     std::uint64_t bricks_produced = 0;
-    std::uint64_t constant_tiles = 0;  ///< of those: turned out to hold one value, and keep no brick
+    /// Produced tiles that turned out to hold one value, and keep no brick.
+    std::uint64_t constant_tiles = 0;
     std::uint64_t bricks_evicted = 0;
     std::uint64_t nodes_evicted = 0;
-    std::uint64_t bricks_relinked = 0;    ///< still in the pool when their node came back
-    std::uint64_t bricks_cached = 0;      ///< read back into main memory when they had to leave the pool
-    std::uint64_t bricks_restored = 0;    ///< taken from main memory instead of produced
-    std::uint64_t bricks_prefetched = 0;  ///< produced by prefetch() since the frame before
-    double march_ms = 0.0;                ///< of `milliseconds`: rays
-    double produce_ms = 0.0;              ///< of `milliseconds`: subdividing, producing, uploading
-    double tree_ms = 0.0;                 ///< of `produce_ms`, by render(): neither bricks nor uploading
-    /// Of `produce_ms`: sending to the GPU what is made or kept in main memory: nodes, volumes' bricks, and
-    /// bricks that come back from there. What the GPU makes itself is not sent.
+    /// Bricks that were still in the pool when their node came back.
+    std::uint64_t bricks_relinked = 0;
+    /// Bricks read back into main memory when they had to leave the pool.
+    std::uint64_t bricks_cached = 0;
+    /// Bricks taken from main memory instead of produced.
+    std::uint64_t bricks_restored = 0;
+    /// Bricks produced by prefetching since the frame before.
+    std::uint64_t bricks_prefetched = 0;
+    /// Part of `milliseconds`: marching rays.
+    double march_ms = 0.0;
+    /// Part of `milliseconds`: subdividing, producing and uploading.
+    double produce_ms = 0.0;
+    /// Part of `produce_ms`, in frames without a budget: the tree, without bricks and uploading.
+    double tree_ms = 0.0;
+    /// Part of `produce_ms`: sending to the GPU what main memory makes or keeps (nodes, bricks of volumes,
+    /// bricks that come back from main memory). What the GPU makes itself is not sent.
     double upload_ms = 0.0;
-    bool converged = true;  ///< nothing was missing: the picture is that of a frame without a budget
-    std::uint64_t bricks_resident = 0;  ///< after the frame
-    /// Of the resident bricks, those that rays read, or that were produced, since the frame began; with a
-    /// budget, since the first frame of this view began.
+    /// Nothing was missing: the picture is that of a frame without a budget.
+    bool converged = true;
+    std::uint64_t bricks_resident = 0;  ///< bricks in the pool after the frame
+    /// Resident bricks that rays read, or that were produced, since the frame began; with a budget, since the
+    /// first frame of this view began.
     std::uint64_t bricks_used = 0;
-    std::uint64_t brick_slots = 0;    ///< the most that can be resident
-    std::size_t node_pool_bytes = 0;  ///< what the two stores take, all of it, used or not
-    std::size_t brick_pool_bytes = 0;
-    std::size_t brick_cache_bytes = 0;  ///< what is kept in main memory now
+    std::uint64_t brick_slots = 0;      ///< the most bricks that can be resident
+    std::size_t node_pool_bytes = 0;    ///< size of the node pool, used or not
+    std::size_t brick_pool_bytes = 0;   ///< size of the brick pool, used or not
+    std::size_t brick_cache_bytes = 0;  ///< size of the bricks in main memory now
 };
 
-/// What a call of Renderer::prefetch_finer() came to.
-struct Prefetched {
-    std::uint64_t bricks = 0;  ///< produced
-    bool more = false;         ///< there may be more to produce; not once the pools are full
+/// Result of Renderer::prefetch_finer().
+struct PrefetchResult {
+    std::uint64_t bricks = 0;  ///< bricks produced
+    bool more = false;         ///< there may be more to produce; false once the pools are full
 };
 
 }  // namespace cairn::renderer

@@ -8,13 +8,13 @@
 
 namespace cairn::renderer {
 
-/// The last view's picture, as far as its rows are finished: a view that does not change is marched once.
+/// The finished rows of the last view's picture, so that a view that does not change is marched once.
 class KeptPicture {
 public:
-    /// Those rows, when all of them were kept for just this view; else an empty image.
+    /// The rows, if all of them were kept for this view; else an empty image.
     [[nodiscard]] optics::Image rows(const View& view, Rows rows) const;
 
-    /// Keeps finished rows; those of another view are forgotten. Pictures past the limit are not kept.
+    /// Keeps finished rows, and forgets those of another view. A picture larger than the limit is not kept.
     void keep(const View& view, Rows rows, const optics::Image& image);
 
     void forget();
@@ -24,7 +24,7 @@ public:
 private:
     View view_;
     optics::Image image_;
-    std::vector<bool> finished_;  // a row each
+    std::vector<bool> finished_;  // one flag per row
 };
 
 }  // namespace cairn::renderer

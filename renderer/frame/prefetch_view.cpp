@@ -8,10 +8,13 @@
 namespace cairn::renderer {
 namespace {
 
-constexpr int ahead_pixels = 4096;  // of a band: a pass through it takes some milliseconds
-constexpr int ahead_stride = 2;     // at most: pixels a ray
+/// Pixels of a band: a pass through it takes some milliseconds.
+constexpr int prefetch_pixels = 4096;
+/// The most pixels per ray, along each axis.
+constexpr int prefetch_stride = 2;
 
-/// The same rays at fewer pixels: each sees the levels that it would see in the whole picture.
+/// The view with one ray per stride^2 pixels. Each ray sees the levels that it would see in the whole
+/// picture.
 View thinned_by(const View& view, int stride) {
     View thin = view;
     thin.size.width = (view.size.width + stride - 1) / stride;
@@ -33,11 +36,11 @@ View thinned(const View& view) {
 View finer(const View& view, const TreeShape& shape) {
     View fine = view;
     fine.detail.pixel_error = view.detail.pixel_error / shape.n;
-    return thinned_by(fine, std::clamp(int(shape.m * fine.detail.pixel_error), 1, ahead_stride));
+    return thinned_by(fine, std::clamp(int(shape.m * fine.detail.pixel_error), 1, prefetch_stride));
 }
 
 bool band_from_middle(const View& view, int number, Rows& rows) {
-    const int count = std::max(ahead_pixels / view.size.width / PIXEL_BLOCK_SIDE, 1) * PIXEL_BLOCK_SIDE;
+    const int count = std::max(prefetch_pixels / view.size.width / PIXEL_BLOCK_SIDE, 1) * PIXEL_BLOCK_SIDE;
     const int bands = (view.size.height + count - 1) / count;
     if (number >= bands) return false;
     const int middle = bands / 2;

@@ -13,9 +13,9 @@ using glm::dvec3;
 
 /// Pixels around a box that count as covered, for the rounding of directions.
 constexpr double pixel_margin = 0.25;
-/// Nearer to the eye's plane, in voxels, nothing is projected.
+/// Depth, in voxels, below which nothing is projected.
 constexpr double least_depth = 1e-3;
-/// The same for positions, as a share of the largest coordinate: a few steps of a float.
+/// Margin for the rounding of positions, as a share of the largest coordinate: a few steps of a float.
 constexpr double place_margin = 0x1p-21;
 
 class BlockGrid {
@@ -78,7 +78,7 @@ private:
         const double depth = glm::dot(middle, forward_);
         const double half_depth = glm::dot(half, glm::abs(forward_));
         if (depth + half_depth < least_depth) return {glm::ivec2(0), glm::ivec2(-1)};
-        // A box that the eye's plane cuts may be anywhere.
+        // A box that the eye's plane cuts may cover any pixel.
         if (depth - half_depth < least_depth) return {glm::ivec2(0), last};
         const glm::dvec2 place(glm::dot(middle, across_), glm::dot(middle, down_));
         const glm::dvec2 reach(glm::dot(half, glm::abs(across_)), glm::dot(half, glm::abs(down_)));
@@ -97,8 +97,9 @@ private:
     bool is_blended_;
     dvec3 forward_;
     dvec3 eye_;
-    dvec3 across_;  ///< with a point from the eye, at depth 1: its place on the picture, [-1, 1]
-    dvec3 down_;
+    /// The dot product with a point from the eye, at depth 1, is the point's x on the picture, [-1, 1].
+    dvec3 across_;
+    dvec3 down_;  ///< like `across_`, for y
     glm::dvec2 half_size_;
     double slack_;
     glm::ivec2 count_;

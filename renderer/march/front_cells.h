@@ -10,7 +10,7 @@
 
 namespace cairn::renderer {
 
-/// A part of the root cube, in voxels of the finest level.
+/// A box in the root cube, in voxels of the finest level.
 struct Box {
     glm::dvec3 low{0.0};
     glm::dvec3 high{0.0};
@@ -19,24 +19,26 @@ struct Box {
 /// How far rays from an eye go down the tree (shows() in descend.glsl).
 struct ConeOfSight {
     glm::dvec3 eye{0.0};
-    double width = 0.0;       ///< of a pixel's cone at distance 1
-    bool is_blended = false;  ///< rays see mips of a brick too, and not all of a tile by the same one
+    double width = 0.0;  ///< width of a pixel's cone at distance 1
+    /// Rays see mips of a brick too, and may see parts of one tile by different mips.
+    bool is_blended = false;
 
+    /// Distance to the nearest point of the box.
     [[nodiscard]] double distance_to(const Box& box) const {
         return glm::length(glm::max(glm::max(box.low - eye, eye - box.high), glm::dvec3(0.0)));
     }
-    /// To its farthest corner.
+    /// Distance to the farthest corner of the box.
     [[nodiscard]] double distance_past(const Box& box) const {
         return glm::length(glm::max(glm::abs(box.low - eye), glm::abs(box.high - eye)));
     }
 };
 
-/// Calls add(Box) for cells which together hold all that is not empty, as far as the tree's CPU mirror knows:
-/// the children that are not empty of the tiles that such rays show, or of tiles that have none yet. Tiles
-/// for which see(Box) is false are left out.
+/// Calls add(Box) for cells that together hold everything that is not empty, according to the CPU mirror of
+/// the tree. A cell is a child, not empty, of a tile that rays show, or of a tile that has no children yet.
+/// Tiles for which see(Box) is false are left out.
 ///
-/// What is empty here is so at coarser levels too: a brick's voxels are never larger than its tile's
-/// children. Its coarsest mip's may be; then the tile is taken whole.
+/// A cell that is empty here is empty at coarser levels too: the voxels of a brick are never larger than the
+/// children of its tile. The voxels of its coarsest mip may be larger; then the whole tile is one cell.
 template <typename See, typename Add>
 class FrontCells {
 public:
@@ -49,19 +51,19 @@ public:
         const Box box = box_of(tile);
         if (!see_(box)) return;
         const double voxel_side = (box.high.x - box.low.x) / shape_.m;
-        // Where rounding decides, further down: that leaves nothing out.
+        // If rounding decides, the walk goes down: that leaves nothing out.
         const bool goes_down =
             tile.level < shape_.max_level && voxel_side > 0.999 * cone_.width * cone_.distance_to(box);
-        // Blended, rays may see the near end of a tile by its children and the far end by itself.
+        // With blending, rays may see the near end of a tile by its children and the far end by itself.
         const bool shows_itself =
             !goes_down || (cone_.is_blended && voxel_side < 1.001 * cone_.width * cone_.distance_past(box));
         const bool holds_mips = !cone_.is_blended || shape_.n * shape_.n <= shape_.m;
-        const bool knows_children = (node.child_mask.x | node.child_mask.y) != 0;
-        // A tile without its brick is asked for, or stood in for, as a whole; one that nothing finer adds to
-        // is shown as a whole.
+        const bool has_child_mask = (node.child_mask.x | node.child_mask.y) != 0;
+        // A tile without its brick is asked for, or replaced by an ancestor, as a whole. A final tile is
+        // shown as a whole.
         const bool has_brick = (node.brick & NODE_SLOT) != 0;
         if ((node.brick & NODE_FINAL) != 0 ||
-            (shows_itself && (!has_brick || !knows_children || !holds_mips))) {
+            (shows_itself && (!has_brick || !has_child_mask || !holds_mips))) {
             add_(box);
             return;
         }

@@ -60,7 +60,7 @@ std::vector<MarchVariant> valid_variants(RayKind rays, const MarchSetting& setti
                                    .cones = !is_primary && on[4]};
         if (variant.progressive && setting.tile_queries == TileQueries::blocks) continue;
         if (variant.blended && setting.shape.mips == 0) continue;
-        if (variant.cones && !(variant.soft && setting.content.of_surfaces())) continue;
+        if (variant.cones && !(variant.soft && setting.content.is_surface())) continue;
         valid.push_back(variant);
     }
     return valid;

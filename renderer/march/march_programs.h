@@ -6,12 +6,11 @@
 
 #include "gl/program_family.h"
 #include "gl/shader_source.h"
-#include "renderer/march/tile_queries.h"
-#include "renderer/march/traversal.h"
+#include "renderer/march/march_options.h"
 #include "renderer/pool/tree_shape.h"
-#include "renderer/produce/content_program.h"
+#include "renderer/produce/content.h"
 
-/// The programs of the ray-marcher, and what tells them apart.
+/// The programs of the ray-marcher, and the keys that select them.
 namespace cairn::renderer {
 
 /// What all programs of a marcher have in common.
@@ -25,24 +24,25 @@ struct MarchSetting {
 
 enum class RayKind : std::uint8_t { primary, shadow };
 
-/// What a program can do beside that: it depends on the frame and on the pass.
+/// What distinguishes the programs of a marcher: it depends on the frame and on the pass.
 struct MarchVariant {
     RayKind rays = RayKind::primary;
-    bool progressive = false;  ///< rays ask for bricks on their way, and may take what stands in (PassKind)
-    bool blended = false;      ///< rays see two mips of a brick
-    bool meshes = false;       ///< there are meshes beside the voxels
-    bool proxy = false;        ///< primary rays: they run inside a proxy alone
-    bool show_tree = false;    ///< primary rays: they show the tree in place of colours
-    bool soft = false;         ///< shadow rays: they go to samples of the light
-    bool cones = false;        ///< soft shadow rays: they are cones
+    /// Rays ask for bricks on their way, and may take an ancestor's brick instead (PassKind).
+    bool progressive = false;
+    bool blended = false;    ///< rays see two mips of a brick
+    bool meshes = false;     ///< there are meshes beside the voxels
+    bool proxy = false;      ///< primary rays run only inside a proxy
+    bool show_tree = false;  ///< primary rays show the tree instead of colours
+    bool soft = false;       ///< shadow rays go to samples of the light
+    bool cones = false;      ///< soft shadow rays are cones
     [[nodiscard]] auto operator<=>(const MarchVariant&) const = default;
 };
 
-/// The macros of a program. All of them are always there, whatever their value.
+/// The macros of a program. Each is always defined, whatever its value.
 [[nodiscard]] gl::Defines defines(const MarchSetting& setting);
 [[nodiscard]] gl::Defines defines(const MarchVariant& variant);
 
-/// Every variant that a marcher of this setting may ask for.
+/// Every variant that a marcher of this setting may use.
 [[nodiscard]] std::vector<MarchVariant> valid_variants(RayKind rays, const MarchSetting& setting);
 
 [[nodiscard]] gl::ProgramFamily<MarchVariant> march_programs(const MarchSetting& setting,

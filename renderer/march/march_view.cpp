@@ -7,14 +7,14 @@
 
 namespace cairn::renderer {
 
-Place place_of(const View& view, const glm::dvec3& point, const voxelizer::Grid& grid) {
+TilePoint tile_point(const View& view, const glm::dvec3& point, const voxelizer::Grid& grid) {
     if (view.anchor) return {*view.anchor, point};
     return {Tile{}, (point - grid.origin) / (grid.voxel_size * grid.resolution.x)};
 }
 
 namespace {
 
-/// The view without its anchor, for trees whose depth doubles can tell.
+/// The view without its anchor, for trees so shallow that doubles hold all positions.
 View in_world(const View& view, const voxelizer::Grid& grid, const TreeShape& shape) {
     if (!view.anchor) return view;
     View out = view;
@@ -37,7 +37,7 @@ static_assert(int(optics::LightShape::sphere) == LIGHT_SPHERE &&
               int(optics::LightShape::rectangle) == LIGHT_RECTANGLE &&
               int(optics::LightShape::disk) == LIGHT_DISK);
 
-/// @param voxel_size  of the voxels that the view is told in, in units of its light.
+/// @param voxel_size  side of the voxels that are the unit of `out`, in units of the view's light.
 void set_area_light(interop::MarchView& out, const View& view, double voxel_size) {
     const optics::Light& light = view.light;
     const double lost = 2.0 * std::pow(std::sin(0.5 * light.angle), 2.0);
@@ -53,35 +53,36 @@ void set_area_light(interop::MarchView& out, const View& view, double voxel_size
     out.is_cones = soft && view.shadow.kind == ShadowQuality::Kind::cones ? 1 : 0;
 }
 
-/// What of a view is told in voxels: of the finest level, from the root cube's low corner; or of the coarsest
-/// window, from its own.
-struct Placed {
+/// The positions of a view, in voxels: of the finest level, from the low corner of the root cube; or of the
+/// coarsest window, from the low corner of that window.
+struct ViewPlaces {
     glm::dvec3 eye{0.0};
-    glm::dvec3 light{0.0};   ///< when positional
-    glm::dvec3 centre{0.0};  ///< of the root cube
-    double side = 0.0;       ///< of the root cube
-    double voxel = 1.0;      ///< in the units that the view's lengths are told in
+    glm::dvec3 light{0.0};   ///< position of a positional light
+    glm::dvec3 centre{0.0};  ///< centre of the root cube
+    double side = 0.0;       ///< side of the root cube
+    double voxel = 1.0;      ///< side of a voxel, in the view's unit of length
 };
 
-Placed in_voxels(const View& view, const voxelizer::Grid& grid) {
+ViewPlaces in_voxels(const View& view, const voxelizer::Grid& grid) {
     auto place = [&](const glm::dvec3& world) { return (world - grid.origin) / grid.voxel_size; };
     const double side = grid.resolution.x;
     return {place(view.camera.eye), place(view.light.position), glm::dvec3(0.5 * side), side,
             grid.voxel_size};
 }
 
-Placed in_window(const View& view, const voxelizer::Grid& grid, const TreeShape& shape,
-                 const Window& window) {
-    auto place = [&](const Place& point) { return place_in(window, shape, point); };
+ViewPlaces in_window(const View& view, const voxelizer::Grid& grid, const TreeShape& shape,
+                     const Window& window) {
+    auto place = [&](const TilePoint& point) { return point_in_window(window, shape, point); };
     const glm::dvec3 low = place({Tile{}, glm::dvec3(0.0)});
     const glm::dvec3 high = place({Tile{}, glm::dvec3(1.0)});
     const double unit = view.anchor ? std::ldexp(1.0, -shape.n_shift() * view.anchor->level)
                                     : 1.0 / (grid.voxel_size * grid.resolution.x);
-    return {place(place_of(view, view.camera.eye, grid)), place(place_of(view, view.light.position, grid)),
-            0.5 * (low + high), high.x - low.x, 1.0 / ((high.x - low.x) * unit)};
+    return {place(tile_point(view, view.camera.eye, grid)),
+            place(tile_point(view, view.light.position, grid)), 0.5 * (low + high), high.x - low.x,
+            1.0 / ((high.x - low.x) * unit)};
 }
 
-interop::MarchView march_view(const View& view, const Placed& placed, int n) {
+interop::MarchView march_view(const View& view, const ViewPlaces& places, int n) {
     const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
@@ -94,9 +95,9 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
 
     // Far from the scene a float's step is many voxels: then rays start near the root cube, from the plane
     // that the eye moved forward lies in.
-    const glm::dvec3& eye = placed.eye;
-    const double distance = glm::dot(placed.centre - eye, forward);
-    const double skipped = distance > 3.0 * placed.side ? distance - 2.0 * placed.side : 0.0;
+    const glm::dvec3& eye = places.eye;
+    const double distance = glm::dot(places.centre - eye, forward);
+    const double skipped = distance > 3.0 * places.side ? distance - 2.0 * places.side : 0.0;
 
     interop::MarchView out{};
     out.eye = glm::vec3(eye + forward * skipped);
@@ -108,7 +109,7 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     out.width = view.size.width;
     out.height = view.size.height;
     out.row_count = view.size.height;
-    out.light = glm::vec3(view.light.positional ? placed.light : glm::normalize(view.light.towards));
+    out.light = glm::vec3(view.light.positional ? places.light : glm::normalize(view.light.towards));
     out.light_is_positional = view.light.positional ? 1 : 0;
     out.light_color = view.light.color;
     out.ambient = view.light.ambient;
@@ -117,12 +118,12 @@ interop::MarchView march_view(const View& view, const Placed& placed, int n) {
     out.shown = int(view.show);
     out.casts_shadows = view.shadow.kind == ShadowQuality::Kind::none ? 0 : 1;
     out.shadow_cone_scale = float(view.shadow.pixel_error);
-    set_area_light(out, view, placed.voxel);
+    set_area_light(out, view, places.voxel);
     const auto finite = [](const glm::vec3& v, float scalar) {
         return std::isfinite((v.x + v.y) + (v.z + scalar));
     };
     if (!finite(out.eye, out.pixel_cone) || !finite(out.forward, out.skipped) || !finite(out.light, 0.0F)) {
-        throw Error(Fault::usage, "view", "the camera or the light is too far away for a float to tell",
+        throw Error(Fault::usage, "view", "the camera or the light is too far away for a float to hold",
                     "bring it nearer to the scene");
     }
     return out;

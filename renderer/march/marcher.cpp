@@ -16,14 +16,14 @@
 namespace cairn::renderer {
 namespace {
 
-/// Passes in a row in which rays only pause: a ray crosses fewer than 8 cells for each voxel across the root
-/// cube.
-/// With windows, that many in each.
+/// The most passes in a row in which rays only pause: a ray crosses fewer than 8 cells per voxel across the
+/// root cube. With windows, it crosses that many per window.
 constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
 constexpr int most_pauses_in_windows = ((16 << WINDOW_TILE_BITS) / TURN_BUDGET + 1) * MAX_WINDOWS;
 constexpr std::size_t window_header_bytes = sizeof(glm::ivec4);
 
-/// Rays in windows begin their descents at the window's tiles, and the eye is never far from those.
+/// The options for a tree with windows: rays descend from the tiles of a window, and the eye is never far
+/// from those.
 MarchOptions options_for(const TreeShape& shape, const MarchOptions& options) {
     MarchOptions fitting = options;
     if (shape.has_windows()) {
@@ -87,7 +87,7 @@ int Marcher::band_rows(int width, int height) {
 }
 
 void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool,
-                          bool is_blended, const MarchMix& mix) {
+                          bool is_blended, const MixTextures& mix) {
     mix_ = mix;
     blended_ = is_blended;
     size_ = glm::ivec2(view.width, view.row_count);
@@ -106,18 +106,18 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
     if (soft_shadows_ && shadow_sums_.size_bytes() < sum_bytes)
         shadow_sums_ = gl::Buffer(sum_bytes, "sums of shadow rays");
     queries_.begin_frame(size_, tree.entry_count(), pool.slot_count());
-    interop::MarchView marched = view;
-    // They are told for one direction.
+    interop::MarchView ray_view = view;
+    // The ends of shadow rays hold for one direction.
     if (options_.block_starts && view.casts_shadows != 0 && view.light_is_positional == 0 && !soft_shadows_) {
         const ShadowEnds ends = shadow_ends(view, tree, is_blended);
         shadow_ends_.write(0, ends.ends.data(), ends.ends.size() * sizeof(float));
-        marched.shadow_across = ends.across;
-        marched.shadow_across_offset = ends.across_offset;
-        marched.shadow_down = ends.down;
-        marched.shadow_down_offset = ends.down_offset;
-        marched.has_shadow_ends = 1;
+        ray_view.shadow_across = ends.across;
+        ray_view.shadow_across_offset = ends.across_offset;
+        ray_view.shadow_down = ends.down;
+        ray_view.shadow_down_offset = ends.down_offset;
+        ray_view.has_shadow_ends = 1;
     }
-    view_.write(0, &marched, sizeof(marched));
+    view_.write(0, &ray_view, sizeof(ray_view));
     std::vector<interop::BlockStart> starts =
         options_.block_starts ? block_starts(view, tree, is_blended) : all_block_starts(view);
     if (mix.mesh_nearest != 0) add_empty_blocks(view, starts);
@@ -156,7 +156,7 @@ void Marcher::set_mix(const gl::Program& program) const {
         program.set("mesh_first_row", mix_.mesh_first_row);
         program.set("voxels_hidden", int(mix_.voxels_hidden));
         program.set("mesh_shadows", int(mix_.mesh_shadows));
-        program.set("mesh_own_height", mix_.mesh_own_height);
+        program.set("mesh_self_shadow_height", mix_.mesh_self_shadow_height);
     }
     if (mix_.proxy_span != 0) program.set("proxy_first_row", mix_.proxy_first_row);
 }
@@ -178,20 +178,20 @@ PassResult Marcher::run_pass(Round round, const Tree& tree, const BrickPool& poo
 
     const std::uint32_t old_shadow = waiting_shadow_;
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
-    if (old_shadow != 0) run({program(RayKind::shadow, kind), true, old_shadow}, round, pool, kind);
+    if (old_shadow != 0) dispatch({program(RayKind::shadow, kind), true, old_shadow}, round, pool, kind);
     const std::uint32_t primary =
         first_pass_ ? std::uint32_t(start_count_ * PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) : waiting_primary_;
-    if (primary != 0) run({program(RayKind::primary, kind), false, primary}, round, pool, kind);
+    if (primary != 0) dispatch({program(RayKind::primary, kind), false, primary}, round, pool, kind);
     const bool began = first_pass_;
     first_pass_ = false;
     list_side_ ^= 1;
 
-    QueryBuffer::Told told = queries_.read(round);
-    const interop::MarchCounters& counters = told.counters;
+    QueryBuffer::Reports reports = queries_.read(round);
+    const interop::MarchCounters& counters = reports.counters;
     PassResult result;
-    result.queries = std::move(told.queries);
-    result.brick_stamps = std::move(told.brick_stamps);
-    result.bytes_read = told.bytes_read;
+    result.queries = std::move(reports.queries);
+    result.brick_stamps = std::move(reports.brick_stamps);
+    result.bytes_read = reports.bytes_read;
     const bool waiting = counters.waiting_primary != 0 || counters.waiting_shadow != 0;
     const bool stalled = waiting && result.queries.empty() && counters.paused == 0 && primary == 0;
     pauses_ = counters.paused != 0 && result.queries.empty() ? pauses_ + 1 : 0;
@@ -207,12 +207,12 @@ PassResult Marcher::run_pass(Round round, const Tree& tree, const BrickPool& poo
     return result;
 }
 
-void Marcher::run(const Dispatch& dispatch, Round round, const BrickPool& pool, PassKind kind) const {
+void Marcher::dispatch(const Dispatch& work, Round round, const BrickPool& pool, PassKind kind) const {
     // Four lists of `capacity_` pixels: primary in and out, shadow in and out, changing sides each pass.
     auto list = [&](int rays, int side) { return unsigned(std::size_t(2 * rays + side) * capacity_); };
-    const int of_kind = dispatch.is_shadow ? 1 : 0;
-    const gl::Program& program = dispatch.program;
-    program.set("ray_count", dispatch.rays);
+    const int of_kind = work.is_shadow ? 1 : 0;
+    const gl::Program& program = work.program;
+    program.set("ray_count", work.rays);
     program.set("first_pass", int(first_pass_));
     program.set("list_in", list(of_kind, list_side_));
     program.set("list_out", list(of_kind, list_side_ ^ 1));
@@ -223,7 +223,7 @@ void Marcher::run(const Dispatch& dispatch, Round round, const BrickPool& pool, 
     program.set("pool_levels", pool.levels());
     set_mix(program);
     program.use();
-    gl::dispatch_threads(dispatch.rays, THREADS_PER_GROUP);
+    gl::dispatch_threads(work.rays, THREADS_PER_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

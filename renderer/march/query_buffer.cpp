@@ -38,7 +38,7 @@ QueryBuffer::QueryBuffer(int capacity, TileQueries how, bool has_windows, const 
       has_windows_(has_windows),
       words_(buffer_bytes, "tile query buffer") {
     if (capacity < 1 || capacity > QUERY_CAPACITY) {
-        throw Error(Fault::usage, "tile queries", std::to_string(capacity) + " are no capacity",
+        throw Error(Fault::usage, "tile queries", std::to_string(capacity) + " are out of range",
                     "choose between 1 and " + std::to_string(QUERY_CAPACITY));
     }
     if (how == TileQueries::blocks) tile_blocks_.emplace(shaders);
@@ -61,8 +61,8 @@ void QueryBuffer::begin_frame(const glm::ivec2& band, std::uint32_t entry_count,
 void QueryBuffer::begin_pass(bool is_progressive) {
     is_progressive_ = is_progressive;
     words_.fill(0, list_offset, 0);
-    if (urgent_told_) words_.fill(urgent_offset, QUERY_RANKS * word_bytes, 0);
-    urgent_told_ = false;
+    if (has_urgent_) words_.fill(urgent_offset, QUERY_RANKS * word_bytes, 0);
+    has_urgent_ = false;
     words_.bind_storage(SSBO_QUERIES);
     if (tile_blocks_) {
         tile_blocks_->begin_pass();
@@ -81,54 +81,54 @@ void QueryBuffer::set(const gl::Program& program) const {
     if (is_progressive_) program.set("entry_count", entry_count_);
 }
 
-QueryBuffer::Told QueryBuffer::read(Round round) {
-    Told told;
-    words_.read(0, &told.counters, sizeof(told.counters));
-    told.bytes_read = sizeof(told.counters);
+QueryBuffer::Reports QueryBuffer::read(Round round) {
+    Reports reports;
+    words_.read(0, &reports.counters, sizeof(reports.counters));
+    reports.bytes_read = sizeof(reports.counters);
     if (tile_blocks_)
-        read_blocks(told, round);
+        read_blocks(reports, round);
     else
-        read_list(told);
-    return told;
+        read_list(reports);
+    return reports;
 }
 
-void QueryBuffer::read_list(Told& told) {
-    const std::uint32_t asked = told.counters.queries;  // would be in the list, had it room for all
+void QueryBuffer::read_list(Reports& reports) {
+    const std::uint32_t asked = reports.counters.queries;  // queries that rays made, in the list or not
     std::vector<std::uint32_t> words =
         words_.read_all<std::uint32_t>(std::min(asked, capacity_), list_offset);
     std::vector<std::uint32_t> counts;
     if (is_progressive_) counts = words_.read_all<std::uint32_t>(QUERY_COUNTS, counts_offset);
-    told.brick_stamps = usage_.read_all<std::uint32_t>(slot_count_);
-    told.bytes_read += (words.size() + counts.size() + told.brick_stamps.size()) * word_bytes;
+    reports.brick_stamps = usage_.read_all<std::uint32_t>(slot_count_);
+    reports.bytes_read += (words.size() + counts.size() + reports.brick_stamps.size()) * word_bytes;
     if (asked > capacity_) {
-        const std::vector<std::uint32_t> urgent = read_urgent(told);
+        const std::vector<std::uint32_t> urgent = read_urgent(reports);
         words.insert(words.end(), urgent.begin(), urgent.end());
     }
     for (const std::uint32_t word : words) {
-        TileQuery& query = told.queries.emplace_back(query_of_word(word, entry_count_));
+        TileQuery& query = reports.queries.emplace_back(query_of_word(word, entry_count_));
         if (is_progressive_) query.rays = counts[word % QUERY_COUNTS];
     }
 }
 
-void QueryBuffer::read_blocks(Told& told, Round round) {
-    const TileBlocks::Told blocks = tile_blocks_->reduce();
-    told.bytes_read += blocks.bytes_read;
+void QueryBuffer::read_blocks(Reports& reports, Round round) {
+    const TileBlocks::Reports blocks = tile_blocks_->reduce();
+    reports.bytes_read += blocks.bytes_read;
     for (const std::uint32_t slot : blocks.slots)
         block_stamps_[slot] = round.number;
-    told.brick_stamps = block_stamps_;
+    reports.brick_stamps = block_stamps_;
     for (const std::uint32_t word : blocks.queries)
-        told.queries.push_back(query_of_word(word, entry_count_));
-    for (const std::uint32_t word : read_urgent(told)) {
+        reports.queries.push_back(query_of_word(word, entry_count_));
+    for (const std::uint32_t word : read_urgent(reports)) {
         if (!std::binary_search(blocks.queries.begin(), blocks.queries.end(), word))
-            told.queries.push_back(query_of_word(word, entry_count_));
+            reports.queries.push_back(query_of_word(word, entry_count_));
     }
 }
 
-/// One query of each rank, of those that found no room.
-std::vector<std::uint32_t> QueryBuffer::read_urgent(Told& told) {
-    urgent_told_ = true;
+/// Reads one query per rank, of those that found no room in the list.
+std::vector<std::uint32_t> QueryBuffer::read_urgent(Reports& reports) {
+    has_urgent_ = true;
     const std::size_t ranks = has_windows_ ? QUERY_RANKS : QUERY_RANK_WINDOWS;
-    told.bytes_read += ranks * word_bytes;
+    reports.bytes_read += ranks * word_bytes;
     std::vector<std::uint32_t> words;
     for (const std::uint32_t word : words_.read_all<std::uint32_t>(ranks, urgent_offset)) {
         if (word != 0) words.push_back(word - 1);

@@ -11,11 +11,12 @@ namespace {
 
 using glm::dvec3;
 
-/// For the rounding of places and of what is computed from them, as a share of the largest coordinate.
-constexpr double place_margin = 0x1p-20;
+/// Margin for the rounding of positions and of what is computed from them, as a share of the largest
+/// coordinate.
+constexpr double end_margin = 0x1p-20;
 
-/// Side of the largest voxels that shadow rays of the view can meet: as wide as those of the far end of the
-/// root cube, or smaller. @param width  of a shadow ray from what is seen at distance 1.
+/// Side of the largest voxels that shadow rays of the view can meet: those at the far end of the root cube.
+/// @param width  width of a shadow ray that starts on what is seen at distance 1.
 double largest_voxel(const TreeShape& shape, const ConeOfSight& cone, double width) {
     const double root_side = double(shape.resolution());
     const double farthest = glm::length(glm::max(glm::abs(cone.eye), glm::abs(cone.eye - root_side)));
@@ -49,7 +50,7 @@ ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree, bool is
                            is_blended};
     const double voxel =
         largest_voxel(shape, cone, cone.width * std::max(double(view.shadow_cone_scale), 1.0));
-    const double slack = place_margin * root_side;
+    const double slack = end_margin * root_side;
     const auto add = [&](const Box& box) {
         // A ray may meet the voxels of a coarser level there.
         const dvec3 low = glm::floor(box.low / voxel) * voxel - slack;

@@ -24,7 +24,7 @@ void TileBlocks::begin_pass() {
     reports_.bind_storage(SSBO_TILE_REPORTS);
 }
 
-TileBlocks::Told TileBlocks::reduce() const {
+TileBlocks::Reports TileBlocks::reduce() const {
     reports_.bind_storage(SSBO_TILE_REPORTS);
     blocks_.bind_storage(SSBO_TILE_BLOCKS);
     program_.set("size", size_);
@@ -32,21 +32,21 @@ TileBlocks::Told TileBlocks::reduce() const {
     glDispatchCompute(GLuint(block_counts_.x), GLuint(block_counts_.y), 1);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 
-    Told told;
+    Reports out;
     const std::size_t words =
         std::size_t(block_counts_.x) * std::size_t(block_counts_.y) * TILE_BLOCK_ENTRIES;
-    told.bytes_read = words * sizeof(std::uint32_t);
+    out.bytes_read = words * sizeof(std::uint32_t);
     for (const std::uint32_t word : blocks_.read_all<std::uint32_t>(words)) {
         if (word == TILE_REPORT_NONE) continue;
         if ((word & TILE_REPORT_USED) != 0) {
-            told.slots.push_back(word & ~TILE_REPORT_USED);
+            out.slots.push_back(word & ~TILE_REPORT_USED);
         } else {
-            told.queries.push_back(word);
+            out.queries.push_back(word);
         }
     }
-    std::sort(told.queries.begin(), told.queries.end());
-    told.queries.erase(std::unique(told.queries.begin(), told.queries.end()), told.queries.end());
-    return told;
+    std::sort(out.queries.begin(), out.queries.end());
+    out.queries.erase(std::unique(out.queries.begin(), out.queries.end()), out.queries.end());
+    return out;
 }
 
 }  // namespace cairn::renderer

@@ -12,8 +12,8 @@
 
 namespace cairn::renderer {
 
-/// What the rays of a band tell of tiles, by blocks of TILE_BLOCK_SIDE^2 pixels, and the compute pass that
-/// reduces it to TILE_BLOCK_ENTRIES words a block (Crassin et al. 2008, section 5.3).
+/// The reports of rays about tiles, by blocks of TILE_BLOCK_SIDE^2 pixels, and the compute pass that reduces
+/// them to TILE_BLOCK_ENTRIES words per block (Crassin et al. 2008, section 5.3).
 class TileBlocks {
 public:
     explicit TileBlocks(const gl::ShaderSource& shaders);
@@ -21,16 +21,17 @@ public:
     /// Sets the size of the band, in pixels; buffers grow when the bands do.
     void begin_frame(const glm::ivec2& size);
 
-    /// Forgets what the last pass told, and binds the word a pixel that the rays of the next one write.
+    /// Clears the reports of the last pass, and binds the words, one per pixel, that the rays of the next
+    /// pass write.
     void begin_pass();
 
-    struct Told {
-        std::vector<std::uint32_t> queries;  ///< 2 * entry + QUERY_*, each once
-        std::vector<std::uint32_t> slots;    ///< of bricks that were used; some more than once
+    struct Reports {
+        std::vector<std::uint32_t> queries;  ///< query words (2 * entry + QUERY_*), each once, ascending
+        std::vector<std::uint32_t> slots;    ///< slots of used bricks; a slot may occur more than once
         std::size_t bytes_read = 0;
     };
-    /// After the rays of a pass: the only words that are read back.
-    [[nodiscard]] Told reduce() const;
+    /// Reduces the reports of a pass, and reads back only the words of the blocks.
+    [[nodiscard]] Reports reduce() const;
 
 private:
     gl::Program program_;

@@ -6,17 +6,18 @@
 namespace cairn::renderer {
 namespace {
 
-/// The place in tiles of a level: a whole number and what is left, so that no bit is lost.
-struct SplitPlace {
+/// A point in units of a level's tiles: a whole number and a rest, so that no bit is lost.
+struct SplitPoint {
     glm::i64vec3 whole{0};
     glm::dvec3 rest{0.0};
 };
 
-SplitPlace in_tiles(int level, const TreeShape& shape, const Place& place) {
+SplitPoint in_tiles(int level, const TreeShape& shape, const TilePoint& place) {
     const int finer = shape.n_shift() * (level - place.tile.level);
     if (finer >= 0) {
         const glm::dvec3 offset = place.offset * std::ldexp(1.0, finer);
-        // What no whole number can tell stays in the rest: it is too far away for its last bits to matter.
+        // A part that no whole number can hold stays in the rest: the point is too far away for its last bits
+        // to matter.
         const glm::dvec3 whole = glm::floor(glm::clamp(offset, -0x1p61, 0x1p61));
         return {(place.tile.position << std::int64_t(finer)) + glm::i64vec3(whole), offset - whole};
     }
@@ -25,16 +26,16 @@ SplitPlace in_tiles(int level, const TreeShape& shape, const Place& place) {
     return {whole, (glm::dvec3(low_bits) + place.offset) * std::ldexp(1.0, finer)};
 }
 
-/// Further than this, in voxels of a window, a float cannot tell a light from its direction.
+/// Distance, in voxels of a window, beyond which floats cannot distinguish a light from its direction.
 constexpr double far_light = 0x1p40;
 
 }  // namespace
 
-std::vector<Window> windows_around(const TreeShape& shape, const Place& eye) {
+std::vector<Window> windows_around(const TreeShape& shape, const TilePoint& eye) {
     std::vector<Window> windows;
     const int finest = std::max(0, shape.max_level - shape.levels_in_window());
     for (int level = 0; level <= finest; ++level) {
-        const SplitPlace place = in_tiles(level, shape, eye);
+        const SplitPoint place = in_tiles(level, shape, eye);
         const glm::dvec3 about = glm::dvec3(place.whole) + place.rest;
         if (level == 0) {
             const glm::dvec3 corner = glm::clamp(glm::floor(about + 0.5), 0.0, 1.0);
@@ -54,7 +55,7 @@ std::vector<Window> windows_around(const TreeShape& shape, const Place& eye) {
 }
 
 void drop_empty(std::vector<Window>& windows, const TreeShape& shape, Oracle& oracle) {
-    // Tiles of the window before that are not empty; the last window is kept.
+    // Tiles of the next coarser window that are not empty. The last window is always kept.
     std::vector<Tile> full = {Tile{}};
     for (std::size_t i = windows.size() - 1; i-- > 0;) {
         std::vector<Tile> inner;
@@ -77,25 +78,25 @@ void drop_empty(std::vector<Window>& windows, const TreeShape& shape, Oracle& or
     }
 }
 
-glm::dvec3 place_in(const Window& window, const TreeShape& shape, const Place& place) {
-    const SplitPlace split = in_tiles(window.level, shape, place);
+glm::dvec3 point_in_window(const Window& window, const TreeShape& shape, const TilePoint& place) {
+    const SplitPoint split = in_tiles(window.level, shape, place);
     const int shift = shape.m_shift() + shape.n_shift() * shape.levels_in_window();
     return (glm::dvec3(split.whole - window.low) + split.rest) * std::ldexp(1.0, shift);
 }
 
-std::vector<interop::MarchWindow> march_windows(const std::vector<Window>& windows, const TreeShape& shape,
-                                                const Place& eye, const Place* light,
-                                                const glm::dvec3& towards) {
-    std::vector<interop::MarchWindow> marched;
+std::vector<interop::MarchWindow> make_ray_windows(const std::vector<Window>& windows, const TreeShape& shape,
+                                                   const TilePoint& eye, const TilePoint* light,
+                                                   const glm::dvec3& towards) {
+    std::vector<interop::MarchWindow> ray_windows;
     const int tile_shift = shape.m_shift() + shape.n_shift() * shape.levels_in_window();
     for (std::size_t i = 0; i < windows.size(); ++i) {
         const Window& window = windows[i];
         interop::MarchWindow out{};
-        const glm::dvec3 eye_here = place_in(window, shape, eye);
+        const glm::dvec3 eye_here = point_in_window(window, shape, eye);
         out.eye = glm::vec3(eye_here);
         out.light = glm::vec3(glm::normalize(towards));
         if (light != nullptr) {
-            const glm::dvec3 here = place_in(window, shape, *light);
+            const glm::dvec3 here = point_in_window(window, shape, *light);
             const bool is_far = glm::length(here) > far_light;
             out.light = glm::vec3(is_far ? glm::normalize(here) : here);
             out.light_is_positional = is_far ? 0 : 1;
@@ -106,14 +107,15 @@ std::vector<interop::MarchWindow> march_windows(const std::vector<Window>& windo
             out.shift = tiles << (tile_shift - shape.n_shift());
         }
         out.level = window.level;
-        marched.push_back(out);
+        ray_windows.push_back(out);
     }
-    return marched;
+    return ray_windows;
 }
 
 namespace {
 
-/// What `tiles` is to say of the tile, whose parent it says `parent` of.
+/// The word of MarchWindow::tiles for a tile.
+/// @param parent  the word for the tile's parent.
 std::uint32_t child_of_tile(const Tree& tree, std::uint32_t parent, int child,
                             const std::function<void(std::uint32_t)>& subdivide) {
     if (parent == WINDOW_EMPTY || (parent & WINDOW_MISSING) != 0) return parent;
@@ -126,7 +128,7 @@ std::uint32_t child_of_tile(const Tree& tree, std::uint32_t parent, int child,
 }  // namespace
 
 void find_tiles(const std::vector<Window>& windows, const Tree& tree,
-                std::vector<interop::MarchWindow>& marched,
+                std::vector<interop::MarchWindow>& ray_windows,
                 const std::function<void(std::uint32_t)>& subdivide) {
     const TreeShape& shape = tree.shape();
     const std::int64_t n = shape.n;
@@ -135,21 +137,21 @@ void find_tiles(const std::vector<Window>& windows, const Tree& tree,
         for (int number = 0; number < 8; ++number) {
             const glm::i64vec3 tile = window.low + glm::i64vec3(number & 1, number >> 1 & 1, number >> 2);
             const std::int64_t across = std::int64_t(1) << (shape.n_shift() * window.level);
-            std::uint32_t& said = marched[i].tiles[number / 4][number % 4];
+            std::uint32_t& entry_word = ray_windows[i].tiles[number / 4][number % 4];
             const bool in_root = glm::all(glm::greaterThanEqual(tile, glm::i64vec3(0))) &&
                                  glm::all(glm::lessThan(tile, glm::i64vec3(across)));
             if (!in_root) {
-                said = WINDOW_EMPTY;
+                entry_word = WINDOW_EMPTY;
             } else if (window.level == 0) {
-                said = 0;
+                entry_word = 0;
             } else {
                 // The parent is a tile of the next window, which is already known.
                 const glm::i64vec3 parent = tile / n;
                 const glm::ivec3 place(parent - windows[i + 1].low);
                 const glm::ivec3 child(tile - parent * n);
-                const glm::uvec4& row = marched[i + 1].tiles[place.z];
-                said = child_of_tile(tree, row[place.x + 2 * place.y],
-                                     child.x + shape.n * (child.y + shape.n * child.z), subdivide);
+                const glm::uvec4& row = ray_windows[i + 1].tiles[place.z];
+                entry_word = child_of_tile(tree, row[place.x + 2 * place.y],
+                                           child.x + shape.n * (child.y + shape.n * child.z), subdivide);
             }
         }
     }

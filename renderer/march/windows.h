@@ -8,45 +8,51 @@
 
 #include "renderer/pool/tree.h"
 #include "renderer/pool/tree_shape.h"
-#include "renderer/produce/oracle.h"
+#include "renderer/produce/content.h"
 #include "shaders/interop/windows.h"
 
 namespace cairn::renderer {
 
-/// A place told exactly, however small the part of the root cube that it is about.
-struct Place {
+/// A point in the tree, relative to a tile: exact however small the tile is.
+struct TilePoint {
     Tile tile;
-    glm::dvec3 offset{0.0};  ///< from the tile's low corner, in its sides; may lie outside the tile
+    /// From the low corner of the tile, in units of its side; may lie outside the tile.
+    glm::dvec3 offset{0.0};
 };
 
 /// The 2^3 tiles of one level that are nearest to the eye (see shaders/march/windows.glsl). Some may lie
 /// outside the root cube.
 struct Window {
     int level = 0;
-    glm::i64vec3 low{0};  ///< its first tile
+    glm::i64vec3 low{0};  ///< the tile at the window's low corner
 };
 
-/// From the finest that rays can use to the one that holds the root. Each lies in the next, and the eye in
-/// each, unless it is further than a root cube's side away: then there is only the last.
-[[nodiscard]] std::vector<Window> windows_around(const TreeShape& shape, const Place& eye);
+/// The windows around the eye, from the finest that rays can use to the one that holds the root. Each window
+/// lies in the next. The eye lies in all of them, unless it is further away than the side of the root cube:
+/// then there is only the last window.
+[[nodiscard]] std::vector<Window> windows_around(const TreeShape& shape, const TilePoint& eye);
 
-/// Leaves out the windows around the eye that are empty, of which rays need know nothing. Asks the oracle and
-/// not the tree, whose answer would depend on what it holds.
+/// Leaves out the empty windows around the eye, which rays do not need. Asks the oracle and not the tree,
+/// because the tree's answer would depend on what it holds.
 void drop_empty(std::vector<Window>& windows, const TreeShape& shape, Oracle& oracle);
 
-/// Where a place is in a window: in voxels `levels_in_window()` finer than its tiles, from its low corner.
-[[nodiscard]] glm::dvec3 place_in(const Window& window, const TreeShape& shape, const Place& place);
+/// Where a point is in a window: from the window's low corner, in voxels of the level that is
+/// `levels_in_window()` below the window's tiles.
+[[nodiscard]] glm::dvec3 point_in_window(const Window& window, const TreeShape& shape,
+                                         const TilePoint& place);
 
-/// What rays are to know of the windows, without `tiles`.
-/// @param light  its place, or nothing where it is a direction: then `towards` is.
-[[nodiscard]] std::vector<interop::MarchWindow> march_windows(const std::vector<Window>& windows,
-                                                              const TreeShape& shape, const Place& eye,
-                                                              const Place* light, const glm::dvec3& towards);
+/// The windows as shaders read them, except MarchWindow::tiles, which find_tiles() fills.
+/// @param light  position of the light; null if the light is directional.
+/// @param towards  direction to a directional light.
+[[nodiscard]] std::vector<interop::MarchWindow> make_ray_windows(const std::vector<Window>& windows,
+                                                                 const TreeShape& shape, const TilePoint& eye,
+                                                                 const TilePoint* light,
+                                                                 const glm::dvec3& towards);
 
-/// Finds the windows' tiles in the tree, for `tiles`.
-/// @param subdivide  called with the entry of a tile that has no children but should; may give it some.
+/// Fills MarchWindow::tiles: finds the tiles of the windows in the tree.
+/// @param subdivide  called with the entry of a tile that has no children but should; may give it children.
 void find_tiles(const std::vector<Window>& windows, const Tree& tree,
-                std::vector<interop::MarchWindow>& marched,
+                std::vector<interop::MarchWindow>& ray_windows,
                 const std::function<void(std::uint32_t)>& subdivide = {});
 
 }  // namespace cairn::renderer

@@ -22,7 +22,7 @@
 namespace cairn::renderer {
 namespace {
 
-/// What tells the programs that draw a mesh apart.
+/// What distinguishes the programs that draw a mesh.
 struct MeshVariant {
     std::string fragment;  ///< the fragment shader
     bool is_masked = false;
@@ -34,13 +34,13 @@ struct Strip {
     glm::vec3 eye, forward, right, up;
     float skipped;
     glm::ivec2 picture;
-    MarchSpace space;
+    ViewSpace space;
     int first_row;
     int rows;
     bool operator==(const Strip&) const = default;
 };
 
-Strip strip_of(const interop::MarchView& view, const MarchSpace& space, int row) {
+Strip strip_of(const interop::MarchView& view, const ViewSpace& space, int row) {
     const glm::ivec2 picture(view.width, view.height);
     const int most = std::max(MESH_STRIP_PIXELS / picture.x, 1);
     const int first = row / most * most;
@@ -49,8 +49,8 @@ Strip strip_of(const interop::MarchView& view, const MarchSpace& space, int row)
             space,    first,        std::min(most, picture.y - first)};
 }
 
-/// Undoes pixel_ray(): a point `p` from the moved eye is x * w * right - y * w * up + along * forward, with w
-/// = along + what the eye was moved by.
+/// Inverts pixel_ray(): a point `p` from the moved eye is x * w * right - y * w * up + along * forward, with
+/// w = along + the distance that the eye was moved by.
 interop::MeshView mesh_view(const Strip& strip, const voxelizer::Grid& lattice) {
     const glm::dvec3 right(strip.right);
     const glm::dvec3 down(-strip.up);
@@ -137,12 +137,13 @@ struct MeshRaster::Impl {
 
     voxelizer::Grid lattice;
     std::uint64_t triangle_count = 0;
-    voxelizer::GpuSurface own;                                  ///< where it is not the caller's
-    const voxelizer::GpuSurface* surface = nullptr;             ///< that is shown
-    std::vector<gl::Buffer> indices;                            ///< of each chunk
-    gl::Buffer placed;                                          ///< MeshTriangle
-    std::optional<Strip> placed_strip;                          ///< whose rays `placed` is for
-    std::optional<std::pair<std::size_t, unsigned>> placed_of;  ///< chunk and first triangle
+    voxelizer::GpuSurface scene_surface;             ///< empty if the surface is the caller's
+    const voxelizer::GpuSurface* surface = nullptr;  ///< the surface that is shown
+    std::vector<gl::Buffer> indices;                 ///< one buffer per chunk
+    gl::Buffer placed;                               ///< MeshTriangle
+    std::optional<Strip> placed_strip;               ///< the strip whose rays `placed` is for
+    /// Chunk and first triangle of the batch in `placed`.
+    std::optional<std::pair<std::size_t, unsigned>> placed_of;
     gl::Buffer view_buffer;
     gl::Buffer mesh_view_buffer;
     gl::VertexArrayHandle vertex_array;
@@ -152,8 +153,8 @@ struct MeshRaster::Impl {
     std::optional<Strip> surface_strip, span_strip;  ///< what the targets hold
 };
 
-/// Sets the view and where fragments go. The viewport is the whole picture's, of which the targets hold a
-/// part.
+/// Sets the view and the render targets. The viewport is that of the whole picture; the targets hold some of
+/// its rows.
 void MeshRaster::Impl::begin(const Strip& strip, const MeshTargets& targets) {
     if (placed_strip != strip) placed_of.reset();
     placed_strip = strip;
@@ -177,7 +178,7 @@ void MeshRaster::Impl::begin(const Strip& strip, const MeshTargets& targets) {
     glFrontFace(GL_CW);  // rows go downwards
 }
 
-/// Fills `placed` from the bound chunk. Most meshes are one batch: their second pass finds it as the first
+/// Fills `placed` from the bound chunk. Most meshes are one batch, which their second pass finds as the first
 /// left it.
 void MeshRaster::Impl::place(std::size_t chunk, unsigned first, unsigned count) {
     if (placed_of == std::pair(chunk, first)) return;
@@ -260,7 +261,7 @@ void MeshRaster::Impl::draw_span(const Strip& strip) {
 
 namespace {
 
-/// Of the grid, only the lattice counts; in voxels so small, its margin is small too.
+/// A grid of which only the lattice is used. Its voxels are small, so that its margin is small too.
 voxelizer::Grid lattice_around(const scenes::Bounds& bounds) {
     constexpr int resolution = 1024;
     return voxelizer::grid_around(bounds, resolution);
@@ -271,9 +272,9 @@ voxelizer::Grid lattice_around(const scenes::Bounds& bounds) {
 MeshRaster::MeshRaster(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                        const gl::ShaderSource& shaders)
     : impl_(std::make_unique<Impl>(lattice_around(snapshot.bounds), shaders)) {
-    impl_->own =
+    impl_->scene_surface =
         voxelizer::upload(voxelizer::build_surface(scene, snapshot, impl_->lattice, {.attributes = true}));
-    impl_->show(impl_->own);
+    impl_->show(impl_->scene_surface);
 }
 MeshRaster::MeshRaster(const voxelizer::GpuSurface& surface, const voxelizer::Grid& lattice,
                        const gl::ShaderSource& shaders)
@@ -293,7 +294,7 @@ void MeshRaster::show(const voxelizer::GpuSurface& surface) {
     impl_->show(surface);
 }
 
-MeshSurface MeshRaster::draw_surface(const interop::MarchView& view, const MarchSpace& space, int row) {
+MeshSurface MeshRaster::draw_surface(const interop::MarchView& view, const ViewSpace& space, int row) {
     const Strip strip = strip_of(view, space, row);
     if (impl_->surface_strip != strip) {
         impl_->surface_strip.reset();
@@ -304,7 +305,7 @@ MeshSurface MeshRaster::draw_surface(const interop::MarchView& view, const March
     return {strip.first_row, strip.rows, impl_->nearest.texture(0), impl_->look.texture(0)};
 }
 
-MeshSpan MeshRaster::draw_span(const interop::MarchView& view, const MarchSpace& space, int row) {
+MeshSpan MeshRaster::draw_span(const interop::MarchView& view, const ViewSpace& space, int row) {
     const Strip strip = strip_of(view, space, row);
     if (impl_->span_strip != strip) {
         impl_->span_strip.reset();
@@ -319,7 +320,7 @@ std::uint64_t MeshRaster::triangle_count() const {
 }
 
 std::size_t MeshRaster::size_bytes() const {
-    std::size_t sum = impl_->own.size_bytes() + impl_->placed.size_bytes();
+    std::size_t sum = impl_->scene_surface.size_bytes() + impl_->placed.size_bytes();
     for (const gl::Buffer& buffer : impl_->indices)
         sum += buffer.size_bytes();
     return sum;

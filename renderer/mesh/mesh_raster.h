@@ -18,47 +18,51 @@
 namespace cairn::renderer {
 
 /// Where the coordinates of a MarchView lie in the world: world = origin + unit * coordinates.
-struct MarchSpace {
+struct ViewSpace {
     glm::dvec3 origin{0.0};
     double unit = 1.0;
-    bool operator==(const MarchSpace&) const = default;
+    bool operator==(const ViewSpace&) const = default;
 };
 
-/// The nearest triangle at each pixel of some rows of a picture. Distances are those along pixel_ray() of
-/// shaders/march/pixel_ray.glsl, from its origin, in the units of the MarchView; texel row 0 is `first_row`.
+/// The nearest triangle at each pixel of some rows of a picture. Distances count along pixel_ray() of
+/// shaders/march/pixel_ray.glsl, from its origin, in the units of the MarchView. Texel row 0 is `first_row`.
 struct MeshSurface {
     int first_row = 0;
     int rows = 0;
-    GLuint nearest = 0;  ///< R32F; MESH_MISS where there is none
+    GLuint nearest = 0;  ///< R32F: distance of the triangle; MESH_MISS if there is none
     GLuint surface = 0;  ///< RGBA32UI, see shaders/mesh/mesh_surface.glsl
 };
 
-/// Where the ray of each pixel meets the first and the last face of a mesh.
+/// Where the ray of each pixel meets the first and the last face of a mesh. Distances count as in
+/// MeshSurface.
 struct MeshSpan {
     int first_row = 0;
     int rows = 0;
-    GLuint span =
-        0;  ///< RG32F: the first distance, and minus the last; MESH_MISS in both where there is none
-    GLuint faces = 0;  ///< R32F: fronts less backs; under 0 where the ray starts inside a closed mesh
+    /// RG32F: distance of the first face, and minus that of the last; MESH_MISS in both if there is no face.
+    GLuint span = 0;
+    /// R32F: front faces less back faces; below 0 if the ray starts inside a closed mesh.
+    GLuint faces = 0;
 };
 
-/// A scene as triangles, rasterized through the pixels that the marcher sends its rays through. Base colours
-/// are those that voxels get (shaders/voxelize/surface_color.glsl): factor, vertex colour and the nearest
-/// texel, with holes where an alpha mask cuts them. Like voxels, triangles are seen from both sides; lines
-/// and points, which have no area, are not drawn, nor is what is nearer to the eye than MESH_NEAREST_PART of
-/// the mesh's side.
+/// A scene as triangles, rasterized through the pixels that the marcher sends its rays through. Triangles get
+/// the base colours that voxels get (shaders/voxelize/surface_color.glsl): factor, vertex colour and the
+/// nearest texel, with holes where an alpha mask cuts them. Like voxels, triangles are seen from both sides.
+/// Lines and points, which have no area, are not drawn. Neither is anything nearer to the eye than
+/// MESH_NEAREST_PART of the mesh's side.
 ///
-/// Distances come from the ray and the triangle's plane, computed from doubles: not from a depth buffer, so
-/// neither the scale nor the place in the world matters. Blending keeps the least, so neither does the order.
+/// Distances are computed in doubles from the ray and the triangle's plane, and not read from a depth buffer.
+/// So neither the scale of the mesh nor its place in the world matters. Blending keeps the least distance, so
+/// the order of triangles does not matter.
 ///
 /// Needs the context that was current at its construction.
 class MeshRaster {
 public:
     /// The scene and the snapshot are not needed afterwards.
-    /// @throws Error  Fault::memory when it does not fit.
+    /// @throws Error  Fault::memory if the surface does not fit.
     MeshRaster(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                const gl::ShaderSource& shaders = {});
-    /// A surface of the caller's, with attributes, which must outlive the raster or what it shows instead.
+    /// For a surface of the caller's, with attributes. It must outlive the raster, or stay until show()
+    /// replaces it.
     MeshRaster(const voxelizer::GpuSurface& surface, const voxelizer::Grid& lattice,
                const gl::ShaderSource& shaders = {});
     MeshRaster(MeshRaster&&) noexcept;
@@ -67,20 +71,22 @@ public:
     MeshRaster& operator=(const MeshRaster&) = delete;
     ~MeshRaster();
 
-    /// Draws the rows around one row of the picture; which rows those are depends on the picture's size
-    /// alone, so that a row has the same pixels whoever asks for it. Done already for this camera, it costs
-    /// nothing. What it returns is valid until the next call.
-    /// @param view  the camera and the picture's size count.
-    [[nodiscard]] MeshSurface draw_surface(const interop::MarchView& view, const MarchSpace& space, int row);
-    [[nodiscard]] MeshSpan draw_span(const interop::MarchView& view, const MarchSpace& space, int row);
+    /// Draws the rows around one row of the picture. Which rows depends on the picture's size alone, so that
+    /// a row always has the same pixels. Rows that are drawn already for this camera cost nothing. The
+    /// textures are valid until the next call.
+    /// @param view  only the camera and the picture's size are read.
+    [[nodiscard]] MeshSurface draw_surface(const interop::MarchView& view, const ViewSpace& space, int row);
+    /// Draws the first and the last faces in the rows around one row of the picture, like draw_surface().
+    [[nodiscard]] MeshSpan draw_span(const interop::MarchView& view, const ViewSpace& space, int row);
 
-    /// The vertices of the surface have moved in its lattice (voxelizer/surface/moving_surface.h).
+    /// Call it after the vertices of the surface have moved in its lattice
+    /// (voxelizer/surface/moving_surface.h).
     void surface_moved();
     /// Shows another surface in the same lattice, of the same materials, from now on.
     void show(const voxelizer::GpuSurface& surface);
 
     [[nodiscard]] std::uint64_t triangle_count() const;
-    /// In the driver's memory, without what is drawn to and what is the caller's.
+    /// Bytes in the driver's memory, without render targets and without the caller's surface.
     [[nodiscard]] std::size_t size_bytes() const;
 
 private:

@@ -11,12 +11,12 @@
 
 namespace cairn::renderer {
 
-/// Textures of one size that are drawn to together, without a depth buffer.
+/// Render targets without a depth buffer: textures of one size that are drawn to together.
 class MeshTargets {
 public:
     MeshTargets() = default;
-    /// @param formats  of the draw buffers, in their order.
-    /// @throws Error  Fault::memory when the driver refuses them.
+    /// @param formats  one per draw buffer, in their order.
+    /// @throws Error  Fault::memory if the driver refuses the textures.
     MeshTargets(const glm::ivec2& size, const std::vector<GLenum>& formats);
 
     [[nodiscard]] const glm::ivec2& size() const { return size_; }

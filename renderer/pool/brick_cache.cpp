@@ -11,7 +11,7 @@
 namespace cairn::renderer {
 namespace {
 
-/// Texels of a row are not padded while this lives; then OpenGL's default is back.
+/// While it lives, rows of texels are not padded; its end restores OpenGL's default.
 class TightRows {
 public:
     TightRows() { set(1); }
@@ -33,7 +33,7 @@ std::size_t layer_bytes(const BrickPool::Layer& layer) {
     return side * side * side * std::size_t(layer.texel_bytes);
 }
 
-/// Where the next layer, or the masks, may start.
+/// The next offset at which a layer, or the masks, may start.
 std::size_t aligned(std::size_t offset) {
     return (offset + 7) / 8 * 8;
 }
@@ -50,39 +50,39 @@ BrickCache::BrickCache(const BrickPool& pool, std::size_t limit_bytes)
     : pool_(pool), limit_bytes_(limit_bytes), layers_(pool.layers()) {
     for (const BrickPool::Layer& layer : layers_)
         masks_offset_ = aligned(masks_offset_ + layer_bytes(layer));
-    brick_bytes_ = masks_offset_ + pool.mask_bytes_a_slot();
+    brick_bytes_ = masks_offset_ + pool.mask_bytes_per_slot();
     if (limit_bytes < brick_bytes_ + record_bytes) {
         throw Error(Fault::usage, "brick cache", fmt::format("{} bytes hold no brick", limit_bytes),
                     fmt::format("give it at least {} bytes, or none", brick_bytes_ + record_bytes));
     }
-    for (Reading& reading : ring_)
-        reading.buffer = gl::Buffer(brick_bytes_, "bricks read back");
-    writing_ = gl::Buffer(brick_bytes_, "bricks written again");
+    for (Readback& readback : ring_)
+        readback.buffer = gl::Buffer(brick_bytes_, "bricks read back");
+    upload_buffer_ = gl::Buffer(brick_bytes_, "bricks written again");
 }
 
-bool BrickCache::knows(const Tile& tile) const {
-    return bricks_.contains(tile) || std::any_of(ring_.begin(), ring_.end(), [&](const Reading& reading) {
-               return reading.fence && reading.tile == tile;
+bool BrickCache::holds(const Tile& tile) const {
+    return bricks_.contains(tile) || std::any_of(ring_.begin(), ring_.end(), [&](const Readback& readback) {
+               return readback.fence && readback.tile == tile;
            });
 }
 
-void BrickCache::store(std::span<const Tree::Evicted> evicted) {
+void BrickCache::store(std::span<const Tree::EvictedBrick> evicted) {
     if (evicted.empty()) return;
     wait_for_shaders();
     const TightRows tight_rows;
-    for (const Tree::Evicted& brick : evicted) {
-        if (knows(brick.tile)) continue;
-        Reading& reading = ring_[next_reading_];
-        next_reading_ = (next_reading_ + 1) % ring_.size();
-        finish(reading);
-        start_reading(reading, brick);
+    for (const Tree::EvictedBrick& brick : evicted) {
+        if (holds(brick.tile)) continue;
+        Readback& readback = ring_[next_readback_];
+        next_readback_ = (next_readback_ + 1) % ring_.size();
+        finish(readback);
+        start_readback(readback, brick);
         ++counters_.stored;
     }
     glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
 }
 
-void BrickCache::start_reading(Reading& reading, const Tree::Evicted& evicted) const {
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, reading.buffer.id());
+void BrickCache::start_readback(Readback& readback, const Tree::EvictedBrick& evicted) const {
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, readback.buffer.id());
     std::size_t offset = 0;
     for (const BrickPool::Layer& layer : layers_) {
         const glm::ivec3 low = pool_.first_texel(evicted.slot, layer.mip);
@@ -91,26 +91,26 @@ void BrickCache::start_reading(Reading& reading, const Tree::Evicted& evicted) c
                              gl::buffer_offset(offset));
         offset = aligned(offset + layer_bytes(layer));
     }
-    const std::size_t mask_bytes = pool_.mask_bytes_a_slot();
-    glCopyNamedBufferSubData(pool_.masks().id(), reading.buffer.id(),
+    const std::size_t mask_bytes = pool_.mask_bytes_per_slot();
+    glCopyNamedBufferSubData(pool_.masks().id(), readback.buffer.id(),
                              GLintptr(std::size_t(evicted.slot) * mask_bytes), GLintptr(masks_offset_),
                              GLsizeiptr(mask_bytes));
-    reading.tile = evicted.tile;
-    reading.fence = Fence(glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0));
+    readback.tile = evicted.tile;
+    readback.fence = Fence(glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0));
 }
 
-void BrickCache::finish(Reading& reading) {
-    if (!reading.fence) return;
+void BrickCache::finish(Readback& readback) {
+    if (!readback.fence) return;
     constexpr GLuint64 a_second = 1000000000;
     GLenum state = GL_TIMEOUT_EXPIRED;
     while (state == GL_TIMEOUT_EXPIRED)
-        state = glClientWaitSync(reading.fence.get(), GL_SYNC_FLUSH_COMMANDS_BIT, a_second);
-    reading.fence.reset();
+        state = glClientWaitSync(readback.fence.get(), GL_SYNC_FLUSH_COMMANDS_BIT, a_second);
+    readback.fence.reset();
     if (state == GL_WAIT_FAILED) {
         throw Error(Fault::internal, "brick cache", "the driver does not say when a brick was read back",
                     "render without a brick cache");
     }
-    keep(reading.tile, reading.buffer.read_all<std::uint8_t>(brick_bytes_));
+    keep(readback.tile, readback.buffer.read_all<std::uint8_t>(brick_bytes_));
 }
 
 void BrickCache::keep(const Tile& tile, std::vector<std::uint8_t> bytes) {
@@ -123,17 +123,17 @@ void BrickCache::keep(const Tile& tile, std::vector<std::uint8_t> bytes) {
 }
 
 bool BrickCache::restore(const Tile& tile, int slot) {
-    for (Reading& reading : ring_) {
-        if (reading.fence && reading.tile == tile) finish(reading);
+    for (Readback& readback : ring_) {
+        if (readback.fence && readback.tile == tile) finish(readback);
     }
     const auto found = bricks_.find(tile);
     if (found == bricks_.end()) return false;
     order_.splice(order_.begin(), order_, found->second);
 
     const TightRows tight_rows;
-    writing_.write(0, order_.front().bytes.data(), brick_bytes_);
+    upload_buffer_.write(0, order_.front().bytes.data(), brick_bytes_);
     wait_for_shaders();
-    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, writing_.id());
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, upload_buffer_.id());
     std::size_t offset = 0;
     for (const BrickPool::Layer& layer : layers_) {
         const glm::ivec3 low = pool_.first_texel(slot, layer.mip);
@@ -142,8 +142,8 @@ bool BrickCache::restore(const Tile& tile, int slot) {
         offset = aligned(offset + layer_bytes(layer));
     }
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    const std::size_t mask_bytes = pool_.mask_bytes_a_slot();
-    glCopyNamedBufferSubData(writing_.id(), pool_.masks().id(), GLintptr(masks_offset_),
+    const std::size_t mask_bytes = pool_.mask_bytes_per_slot();
+    glCopyNamedBufferSubData(upload_buffer_.id(), pool_.masks().id(), GLintptr(masks_offset_),
                              GLintptr(std::size_t(slot) * mask_bytes), GLsizeiptr(mask_bytes));
     ++counters_.restored;
     return true;

@@ -18,23 +18,24 @@
 
 namespace cairn::renderer {
 
-/// Bricks that had to leave the pool, in main memory: a larger, slower cache behind it, bounded in bytes,
-/// which forgets what was not asked for for longest. A brick that comes back has the same texels and masks,
-/// bit for bit.
+/// A cache in main memory for bricks that had to leave the pool: larger and slower than the pool, and bounded
+/// in bytes. It drops the brick that was not asked for for longest. A brick that comes back has the same
+/// texels and masks, bit for bit.
 ///
-/// Bricks are read back through a ring of pixel-pack buffers, each with a fence, so that nobody waits for the
-/// driver unless the brick is wanted at once or the ring is full.
+/// Bricks are read back through a ring of pixel-pack buffers, each with a fence. So the CPU waits for the
+/// driver only if a brick is wanted at once, or if the ring is full.
 class BrickCache {
 public:
     /// Refers to the pool, which must outlive it.
-    /// @param limit_bytes  of what is kept, the records about it included; at least one brick.
-    /// @throws Error (Fault::usage) when not one brick fits.
+    /// @param limit_bytes  bytes of all kept bricks and their records; room for one brick at least.
+    /// @throws Error (Fault::usage) if not one brick fits.
     BrickCache(const BrickPool& pool, std::size_t limit_bytes);
 
-    /// Keeps what these slots still hold. Call it before anything else is written to them.
-    void store(std::span<const Tree::Evicted> evicted);
+    /// Keeps the bricks that these slots still hold. Call it before anything else is written to the slots.
+    void store(std::span<const Tree::EvictedBrick> evicted);
 
-    /// Writes the tile's brick to the slot. @return false: it is not here.
+    /// Writes the tile's brick to the slot.
+    /// @return  false if the cache does not hold the brick.
     [[nodiscard]] bool restore(const Tile& tile, int slot);
 
     struct Counters {
@@ -53,30 +54,31 @@ private:
         void operator()(GLsync sync) const { glDeleteSync(sync); }
     };
     using Fence = std::unique_ptr<std::remove_pointer_t<GLsync>, DeleteSync>;
-    /// A brick on its way here, while it has a fence.
-    struct Reading {
+    /// A brick on its way to main memory, for as long as `fence` is set.
+    struct Readback {
         gl::Buffer buffer;
         Fence fence;
         Tile tile;
     };
-    static constexpr std::size_t record_bytes = 128;  // a list's node, a map's node, a vector
+    // One node of the list, one of the map, and a vector.
+    static constexpr std::size_t record_bytes = 128;
     static constexpr std::size_t ring_size = 32;
 
-    void start_reading(Reading& reading, const Tree::Evicted& evicted) const;
-    void finish(Reading& reading);
+    void start_readback(Readback& readback, const Tree::EvictedBrick& evicted) const;
+    void finish(Readback& readback);
     void keep(const Tile& tile, std::vector<std::uint8_t> bytes);
-    [[nodiscard]] bool knows(const Tile& tile) const;
+    [[nodiscard]] bool holds(const Tile& tile) const;
 
     const BrickPool& pool_;
     std::size_t limit_bytes_;
     std::vector<BrickPool::Layer> layers_;
-    std::size_t masks_offset_ = 0;  // in a brick's bytes, behind the texels of all layers
+    std::size_t masks_offset_ = 0;  // where masks start in a brick's bytes, behind the texels of all layers
     std::size_t brick_bytes_ = 0;
-    std::list<Brick> order_;  // the last one used first
+    std::list<Brick> order_;  // the brick used last comes first
     std::unordered_map<Tile, std::list<Brick>::iterator, TileHash> bricks_;
-    std::array<Reading, ring_size> ring_;
-    std::size_t next_reading_ = 0;
-    gl::Buffer writing_;
+    std::array<Readback, ring_size> ring_;
+    std::size_t next_readback_ = 0;
+    gl::Buffer upload_buffer_;
     Counters counters_;
 };
 

@@ -32,7 +32,7 @@ gl::TextureHandle make_texture(GLenum format, glm::ivec3 size, GLint filter) {
     return texture;
 }
 
-/// The largest box of at most `count` slots, no side past `most`; of several, the one nearest to a cube.
+/// The largest box of at most `count` slots with no side over `most`; of several, the one nearest to a cube.
 glm::ivec3 box_of(int count, int most) {
     glm::ivec3 best(0);
     auto volume = [](const glm::ivec3& box) { return std::int64_t(box.x) * box.y * box.z; };
@@ -45,7 +45,7 @@ glm::ivec3 box_of(int count, int most) {
     return best;
 }
 
-/// Where the mips of as many slots as `slots` has lie (BrickPool::levels), and the size of it all in texels.
+/// Where the mips of a pool lie (BrickPool::levels), and the size of its textures in texels.
 struct Layout {
     std::vector<glm::ivec4> levels;
     glm::ivec3 size{0};
@@ -72,7 +72,7 @@ Layout lay_out(const TreeShape& shape, const glm::ivec3& slots) {
 
 BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t bytes)
     : shape_(shape), channels_(channels) {
-    const std::size_t mask_bytes = mask_bytes_a_slot();
+    const std::size_t mask_bytes = mask_bytes_per_slot();
     const std::size_t texel_bytes = (channels.color ? 4U : 1U) + (channels.normal ? 4U : 0U);
     auto bytes_of = [&](const Layout& layout, int slots) {
         return layout.texels() * texel_bytes + std::size_t(slots) * mask_bytes;
@@ -90,7 +90,7 @@ BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t byte
         std::min(limits.texture_buffer_texels, limits.shader_storage_bytes / 8) * 8 / mask_bytes;
     std::size_t most = std::min<std::size_t>(
         {bytes / (side * side * side * texel_bytes + mask_bytes), most_masks, std::size_t(1) << 22U});
-    // Mips lie in whole layers: what they take is known only when they lie there.
+    // Mips lie in whole layers: their size follows only from the layout.
     Layout layout;
     for (;; most -= std::max<std::size_t>(most / 64, 1)) {
         slots_ = box_of(int(most), limits.texture_3d_size / int(side));
@@ -155,7 +155,7 @@ void BrickPool::upload(int slot, const gl::Buffer& texels, std::size_t offset_by
                         gl::buffer_offset(offset_bytes));
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    glNamedBufferSubData(masks_.id(), GLintptr(std::size_t(slot) * mask_bytes_a_slot()),
+    glNamedBufferSubData(masks_.id(), GLintptr(std::size_t(slot) * mask_bytes_per_slot()),
                          GLsizeiptr(masks.size_bytes()), masks.data());
 }
 

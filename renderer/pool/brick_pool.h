@@ -13,68 +13,65 @@
 
 namespace cairn::renderer {
 
-/// What a voxel of a brick has beside its coverage, or density.
-struct Channels {
-    bool color = false;
-    bool normal = true;
-};
-
 /// The bounded store of bricks on the GPU (Crassin et al. 2008, section 4.2).
 ///
-/// A slot holds, at one address in each of these, a brick and its mip levels:
-///     color    3D texture, (M + 2)^3 texels a slot: RGBA8 (square root of linear colour times coverage,
-///     coverage),
-///              or R8 coverage (of a volume: density) alone when the scene has no colour
-///     normal   3D texture, RGB10_A2: two normals, as shaders/pool/brick_normals.glsl packs them; where there
-///     are normals masks    64-bit words: which blocks of b^3 voxels are not empty (1 word for each 64
-///     blocks), then one word a block:
-///              which of its voxels are occupied; bit x + b (y + b z). b = TreeShape::block_side(): 4, or 3
-///              where n = 3
+/// A slot holds a brick and its mip levels, at one address in three stores:
 ///
-/// Mip k has (M / 2^k + 2)^3 texels a slot, border included, and lies in layers of its own behind those of
+///     color    3D texture, (M + 2)^3 texels per slot: RGBA8 (square root of linear colour times coverage,
+///              coverage), or R8 coverage (of a volume: density) alone if the content has no colour
+///     normal   3D texture, RGB10_A2, if the content has normals: two normals per texel, as
+///              shaders/pool/brick_normals.glsl packs them
+///     masks    64-bit words: the summary, which marks the blocks of b^3 voxels that are not empty (1 word
+///     per
+///              64 blocks), then one word per block, which marks its occupied voxels in bit x + b (y + b z).
+///              b = TreeShape::block_side(): 4, or 3 if n = 3
+///
+/// Mip k has (M / 2^k + 2)^3 texels per slot, border included, and lies in layers of its own behind those of
 /// mip k - 1: a sibling pool with as many slots, in rows of its own length. So a slot's number is its address
-/// in all of them (section 4.2), and one texture, not one a mip, has to be bound. The blocks of mip k follow
-/// those of mip k - 1; the summary tells of all. Mips add an eighth and a bit for the border: for M = 16 and
-/// N = 4 a fifth.
+/// in all mips (section 4.2), and one texture has to be bound, not one per mip. The blocks of mip k follow
+/// those of mip k - 1; the summary covers all mips. Mips add an eighth of the memory, and a little for the
+/// border: a fifth for M = 16 and N = 4.
 class BrickPool {
 public:
-    /// As many slots as fit in `bytes`. @throws Error (Fault::usage) when not one does, naming the least.
+    /// Makes as many slots as fit in `bytes`.
+    /// @throws Error (Fault::usage) if not one slot fits; names the least size.
     BrickPool(const TreeShape& shape, Channels channels, std::size_t bytes);
     BrickPool(const TreeShape& shape, bool has_color, std::size_t bytes)
         : BrickPool(shape, Channels{.color = has_color}, bytes) {}
 
     [[nodiscard]] int slot_count() const { return slot_count_; }
     [[nodiscard]] std::size_t size_bytes() const { return size_bytes_; }
-    /// Of mip 0, along each axis.
+    /// Slots of mip 0 along each axis.
     [[nodiscard]] glm::ivec3 slots() const { return slots_; }
     [[nodiscard]] glm::ivec3 first_texel(int slot, int mip = 0) const;
-    /// For shaders/pool/brick_levels.glsl, of each mip: slots along x and y, first layer, texels of a slot's
-    /// side.
+    /// One vector per mip, for shaders/pool/brick_levels.glsl: slots along x, slots along y, first layer,
+    /// texels per side of a slot.
     [[nodiscard]] const std::vector<glm::ivec4>& levels() const { return levels_; }
     [[nodiscard]] bool has_color() const { return channels_.color; }
-    /// 64-bit words of masks a slot.
+    /// 64-bit words of masks per slot.
     [[nodiscard]] std::size_t mask_words() const { return std::size_t(shape_.mask_words()); }
 
-    /// What every slot has of a mip in a texture of the pool: a cube of `side` texels at first_texel().
+    /// The part of every slot that holds one mip in one texture: a cube of `side` texels at first_texel().
     struct Layer {
-        std::uint32_t texture = 0;  ///< OpenGL's name of it
+        std::uint32_t texture = 0;  ///< OpenGL's name of the texture
         std::uint32_t format = 0;   ///< a GLenum: how pixels are transferred, bit for bit
         std::uint32_t type = 0;     ///< a GLenum: the type of a pixel's components as they are transferred
         int mip = 0;
         int side = 0;
         int texel_bytes = 0;
     };
-    /// All that a slot holds, but for its masks.
+    /// All layers of a slot; only its masks are not among them.
     [[nodiscard]] std::vector<Layer> layers() const;
-    /// The masks of slot s start at byte s * mask_bytes_a_slot().
+    /// The masks of slot s start at byte s * mask_bytes_per_slot().
     [[nodiscard]] const gl::Buffer& masks() const { return masks_; }
-    [[nodiscard]] std::size_t mask_bytes_a_slot() const { return mask_words() * 8; }
+    [[nodiscard]] std::size_t mask_bytes_per_slot() const { return mask_words() * 8; }
 
-    /// For the marcher: sampled textures. For the producer: images and the mask buffer.
+    /// Binds sampled textures, for the marcher.
     void bind_for_reading() const;
+    /// Binds images and the mask buffer, for a producer.
     void bind_for_writing() const;
 
-    /// Writes a whole slot from the CPU; a pool of one channel only.
+    /// Writes a whole slot from the CPU. Only for a pool of one channel.
     /// @param texels  holds (M + 2)^3 bytes from `offset_bytes` on, x fastest.
     /// @param masks   mask_words() words.
     void upload(int slot, const gl::Buffer& texels, std::size_t offset_bytes,

@@ -7,10 +7,8 @@
 
 namespace cairn::renderer {
 
-/// Which of a fixed number of places are free, and when each was last used: what a cache needs to recycle the
-/// one not used for longest (Crassin et al. 2008, section 4.3).
-///
-/// Time is counted in rounds. What was given out or pinned in the current round is never taken away in it.
+/// Which of a fixed number of places are free, and in which round each was last used: a cache recycles the
+/// place that was not used for longest (Crassin et al. 2008, section 4.3).
 class Lru {
 public:
     explicit Lru(int count) : stamps_(std::size_t(count)) {
@@ -22,11 +20,11 @@ public:
     [[nodiscard]] int count() const { return int(stamps_.size()); }
     [[nodiscard]] int used_count() const { return count() - int(free_.size()); }
 
-    /// The place was used in this round.
+    /// Marks the place as used in this round.
     void touch(int place, Round round) { stamps_[std::size_t(place)] = round; }
     [[nodiscard]] Round stamp(int place) const { return stamps_[std::size_t(place)]; }
 
-    /// Takes a free place, or returns -1.
+    /// Takes a free place; returns -1 if there is none.
     [[nodiscard]] int take_free() {
         if (free_.empty()) return -1;
         const int place = free_.back();

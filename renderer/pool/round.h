@@ -5,8 +5,8 @@
 
 namespace cairn::renderer {
 
-/// One pass of rays and the production that follows it: what the caches count ages in. A slot's or a block's
-/// stamp is the last round that used it.
+/// One pass of rays and the production that follows it. Caches count ages in rounds: the stamp of a slot or
+/// of a block is the last round that used it.
 struct Round {
     std::uint32_t number = 0;  ///< passes count from 1; 0 is before the first
 

@@ -149,7 +149,7 @@ int Tree::take_slot(Round limit) {
     if (!slots_sorted_) {
         old_slots_.clear();
         for (int slot = 0; slot < bricks_.count(); ++slot) {
-            // One that was given out in this round waits for its brick, however old it counts.
+            // A slot that was given out in this round waits for its brick, however old its stamp.
             const bool is_new = slot_birth_[std::size_t(slot)] == round_;
             if (is_old(bricks_.stamp(slot)) && !is_new) old_slots_.push_back(slot);
         }
@@ -197,15 +197,15 @@ void Tree::set_constant(std::uint32_t entry, glm::u8vec4 mean) {
                     std::uint32_t(mean.w) << 24U;
 }
 
-/// The brick of a node that goes stays in its slot, with what is known of the tile.
+/// Keeps the brick of an evicted node in its slot, with the flags of the node.
 void Tree::orphan_brick(std::uint32_t entry) {
     const std::optional<int> held = slot(entry);
     if (!held) return;
     slot_owner_[std::size_t(*held)] = none;
-    orphans_.emplace(tiles_[entry], Orphan{*held, entries_[entry].brick & ~NODE_SLOT});
+    orphans_.emplace(tiles_[entry], OrphanBrick{*held, entries_[entry].brick & ~NODE_SLOT});
 }
 
-/// Gives a new node the brick that an earlier node of its tile left behind.
+/// Gives a new node the orphan of its tile, if there is one.
 void Tree::link_orphan(std::uint32_t entry) {
     if (orphans_.empty()) return;
     const auto orphan = orphans_.find(tiles_[entry]);
@@ -259,7 +259,7 @@ void Tree::evict_block(int block) {
     ++counters_.nodes_evicted;
     if (parent == 0) return;
     --block_child_blocks_[block_of(parent)];
-    gather_old_block(int(block_of(parent)));  // it may be the next to go
+    gather_old_block(int(block_of(parent)));  // it may be the next to be evicted
 }
 
 void Tree::upload() {

@@ -5,6 +5,8 @@
 
 #include <glad/gl.h>
 
+#include "renderer/pool/brick_pool.h"
+
 namespace cairn::renderer {
 namespace {
 
@@ -84,7 +86,7 @@ void CpuBrick::send_to(const BrickPool& pool, int slot) const {
         is_color = false;
     }
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glNamedBufferSubData(pool.masks().id(), GLintptr(std::size_t(slot) * pool.mask_bytes_a_slot()),
+    glNamedBufferSubData(pool.masks().id(), GLintptr(std::size_t(slot) * pool.mask_bytes_per_slot()),
                          GLsizeiptr(masks_.size() * 8), masks_.data());
 }
 

@@ -1,28 +1,30 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include <glm/glm.hpp>
 
-#include "renderer/pool/brick_pool.h"
 #include "renderer/pool/tree_shape.h"
 
 namespace cairn::renderer {
 
+class BrickPool;
+
 /// A brick that a producer fills on the CPU, voxel by voxel, and sends to its slot: the way for a producer of
-/// one's own. For surfaces; mip levels are left empty.
+/// your own. For surfaces; mip levels stay empty.
 class CpuBrick {
 public:
     /// All voxels are empty.
     /// @param channels  must be those of the pool that the brick is sent to.
     CpuBrick(const TreeShape& shape, Channels channels);
 
-    /// @param place     voxels from the brick's low corner, each in [-1, m]: -1 and m are the border, which
-    /// holds
-    ///                  what the neighbours hold there.
+    /// @param place     voxels from the brick's low corner, each in [-1, m]. -1 and m are the border, which
+    ///                  holds what the neighbours hold there.
     /// @param coverage  share of the voxel that is opaque, in [0, 1]. Rounded to 8 bits; 0 is an empty voxel.
-    /// @param normal    of length 1, or 0: the voxel has none. Not read if the channels have no normal.
+    /// @param normal    of length 1, or 0 if the voxel has no normal. Not read if the channels have no
+    /// normal.
     /// @param color     linear, each in [0, 1]. Not read if the channels have no colour.
     void set(const glm::ivec3& place, double coverage, const glm::vec3& normal, const glm::vec3& color = {});
 
@@ -37,9 +39,9 @@ private:
     Channels channels_;
     /// Voxels of the brick and its border that are not empty.
     std::size_t occupied_ = 0;
-    /// As the pool's colour texels are: 4 bytes each, or 1 without a colour; x runs fastest.
+    /// Colour texels as the pool holds them: 4 bytes each, or 1 without a colour; x runs fastest.
     std::vector<std::uint8_t> texels_;
-    /// As shaders/pool/brick_normals.glsl packs them.
+    /// Normals as shaders/pool/brick_normals.glsl packs them.
     std::vector<std::uint32_t> normals_;
     std::vector<std::uint64_t> masks_;
 };

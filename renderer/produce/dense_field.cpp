@@ -20,18 +20,18 @@ std::size_t place_in(const glm::i64vec3& size, std::int64_t x, std::int64_t y, s
     return std::size_t(x + size.x * (y + size.y * z));
 }
 
-/// Where along an axis each voxel's centre lies among the samples: the sample before it, and the share of the
-/// next.
+/// Where the centre of each voxel lies among the samples along an axis: the sample before it, and the share
+/// of the next sample.
 struct Interpolation {
     std::vector<std::int64_t> before;
     std::vector<float> share;
 };
 
-Interpolation interpolation(std::int64_t voxels, std::int64_t samples, double samples_a_voxel) {
+Interpolation interpolation(std::int64_t voxels, std::int64_t samples, double samples_per_voxel) {
     Interpolation result;
     for (std::int64_t v = 0; v < voxels; ++v) {
         // Voxels on samples stay on them, whatever was rounded on the way.
-        double place = (double(v) + 0.5) * samples_a_voxel - 0.5;
+        double place = (double(v) + 0.5) * samples_per_voxel - 0.5;
         if (std::abs(place - std::round(place)) < 1e-6) place = std::round(place);
         place = std::clamp(place, 0.0, double(samples - 1));
         const auto first = std::min(std::int64_t(place), std::max<std::int64_t>(samples - 2, 0));
@@ -154,7 +154,7 @@ void DenseField::build_bounds() {
 void DenseField::fill(int coarseness, const glm::i64vec3& low, const glm::ivec3& count, float* values) const {
     const std::size_t number = std::min(std::size_t(coarseness), levels_.size() - 1);
     const Level& level = levels_[number];
-    // A voxel that is wider than the coarsest one held is empty in the rest.
+    // A voxel wider than the coarsest level held is empty outside that level.
     const double dilution = std::pow(double(frame_.n), -3.0 * double(std::size_t(coarseness) - number));
     const float scale = float(dilution) / unit;
     for (int z = 0; z < count.z; ++z) {

@@ -4,22 +4,22 @@
 #include <cstdint>
 #include <vector>
 
-#include "renderer/produce/volume_field.h"
+#include "renderer/produce/volume.h"
 #include "scenes/volume/volume.h"
 
 namespace cairn::renderer {
 
-/// A volume that is held whole: its samples, their means at every coarser level, and the bounds of what boxes
-/// hold.
+/// A volume that is held whole: its samples, their means at every coarser level, and bounds of the densities
+/// in boxes.
 ///
-/// The finest voxels are cubes as wide as the least of the volume's spacings, centred on its samples where
-/// the spacing is the same along all axes; along the others they are interpolated linearly. There is no finer
-/// level: rays interpolate between voxels, which is the trilinear interpolation of the samples.
+/// The finest voxels are cubes as wide as the least of the volume's spacings. Along an axis of that spacing
+/// they are centred on samples; along a wider one they are interpolated linearly. There is no finer level:
+/// rays interpolate between voxels, which is the trilinear interpolation of the samples.
 class DenseField final : public Field {
 public:
     /// The volume is not needed afterwards.
-    /// @param n  of the tree.
-    /// @throws Error (Fault::memory) when there would be more than 2^33 voxels.
+    /// @param n  n of the tree.
+    /// @throws Error (Fault::memory) if there would be more than 2^33 voxels.
     DenseField(const scenes::Volume& volume, int n);
 
     [[nodiscard]] const FieldFrame& frame() const override { return frame_; }
@@ -31,7 +31,7 @@ private:
         glm::i64vec3 size{0};
         std::vector<std::uint16_t> means;  ///< x fastest; 65535 is density 1
     };
-    /// Cells of the bounds, 2^shift finest voxels a side.
+    /// Bounds of the densities in cells of 2^shift finest voxels per side.
     struct Bounds {
         int shift = 0;
         glm::i64vec3 size{0};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "renderer/pool/brick_pool.h"
 #include "shaders/interop/produce.h"
 #include "shaders/interop/threads.h"
 
@@ -25,7 +26,7 @@ std::uint32_t neighbour_mask(const Tile& tile, const TreeShape& shape) {
     return mask;
 }
 
-/// As far as the grid can tell: where rays go through windows, nobody asks for the finest voxels.
+/// Resolution of the grid. If rays go through windows, no caller asks for the finest voxels.
 int grid_resolution(const TreeShape& shape) {
     return shape.has_windows() ? shape.m : shape.resolution();
 }
@@ -57,8 +58,8 @@ FractalProducer::FractalProducer(const TreeShape& shape, const gl::ShaderSource&
       masks_(gl::build_compute(shaders, "produce/fractal_masks.comp.glsl", shape.defines(false))),
       tiles_(batch * sizeof(interop::FractalTile), "fractal tiles") {}
 
-std::vector<Produced> FractalProducer::produce(std::span<const BrickRequest> requests,
-                                               const BrickPool& pool) {
+std::vector<ProducedTile> FractalProducer::produce(std::span<const BrickRequest> requests,
+                                                   const BrickPool& pool) {
     const auto side = std::size_t(shape_.m) + 2;
     const auto words = std::size_t(shape_.mask_words());
     for (std::size_t first = 0; first < requests.size(); first += batch) {
@@ -75,16 +76,16 @@ std::vector<Produced> FractalProducer::produce(std::span<const BrickRequest> req
         pool.bind_for_writing();
         // Rays of an earlier pass may still read evicted slots.
         glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-        auto run = [&](const gl::Program& program, std::size_t threads) {
+        auto dispatch = [&](const gl::Program& program, std::size_t threads) {
             program.use();
             program.set("tile_count", unsigned(count));
             gl::dispatch_threads(threads, THREADS_PER_GROUP);
         };
-        run(texels_, count * side * side * side);
-        run(masks_, count * words);
+        dispatch(texels_, count * side * side * side);
+        dispatch(masks_, count * words);
         glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     }
-    return std::vector<Produced>(requests.size());
+    return std::vector<ProducedTile>(requests.size());
 }
 
 FractalContent::FractalContent(const TreeShape& shape, const gl::ShaderSource& shaders)

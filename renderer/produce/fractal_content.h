@@ -10,7 +10,7 @@
 namespace cairn::renderer {
 
 /// A cube without one of its eight octants, and each octant that is left likewise, without end: voxel (x, y,
-/// z) of any power-of-two grid across the root cube is occupied when no bit is set in all three.
+/// z) of any power-of-two grid across the root cube is occupied if no bit is set in all three numbers.
 ///
 /// Around its middle the set repeats itself, exactly, at each power of two: a trial for depth without limit.
 /// The root cube is [0, 1]^3 of the world. Dimension log2(7).
@@ -24,9 +24,9 @@ namespace fractal {
 
 }  // namespace fractal
 
-/// Menger's sponge, in three dimensions what Sierpinski's carpet is in two: a cube of 27 without the seven
-/// that lie in the middle of at least two axes, and each of the 20 that are left likewise, without end. The
-/// procedural example of Crassin et al. 2008, section 7, who take one brick for all of its tiles.
+/// Menger's sponge, the counterpart in space of Sierpinski's carpet: a cube of 27 cubes without the seven
+/// that lie in the middle of at least two axes, and each of the 20 cubes that are left likewise, without end.
+/// It is the procedural example of Crassin et al. 2008, section 7, where one brick serves all tiles.
 ///
 /// The root cube is [0, 1]^3 of the world. For trees of N = 3. Dimension log(20) / log(3).
 namespace sponge {
@@ -45,12 +45,13 @@ private:
     TreeShape shape_;
 };
 
-/// Fills bricks from the positions of their voxels in the tile and from which neighbours the tile has, so
-/// that 32 bits are enough at any depth. The set inside a tile is the sponge where N = 3, else the fractal.
+/// Fills bricks from the positions of their voxels in the tile, and from which neighbours of the tile are
+/// occupied, so that 32 bits are enough at any depth. The set inside a tile is the sponge if N = 3, else the
+/// fractal.
 class FractalProducer final : public Producer {
 public:
     FractalProducer(const TreeShape& shape, const gl::ShaderSource& shaders);
-    std::vector<Produced> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+    std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
 
 private:
     TreeShape shape_;
@@ -59,7 +60,7 @@ private:
     gl::Buffer tiles_;
 };
 
-/// The sponge where the tree's N is 3, else the fractal.
+/// The sponge if the tree's N is 3, else the fractal.
 class FractalContent final : public Content {
 public:
     explicit FractalContent(const TreeShape& shape, const gl::ShaderSource& shaders = {});

@@ -27,11 +27,11 @@ std::pair<double, double> distances(const glm::dvec3& point, const glm::dvec3& l
     return {glm::distance(point, nearest), glm::length(farthest)};
 }
 
-/// A stretch of voxels that follow each other in one copy.
+/// A run of voxels that follow each other in one copy.
 struct Run {
-    int first = 0;  ///< in the box that is filled
+    int first = 0;  ///< first voxel, in the box that is filled
     int count = 0;
-    std::int64_t inside = 0;  ///< where it starts in the copy
+    std::int64_t inside = 0;  ///< first voxel, in the copy
 };
 
 std::vector<Run> runs(std::int64_t low, int count, std::int64_t period, std::int64_t end) {
@@ -85,7 +85,7 @@ void HollowSphere::fill(int coarseness, const glm::i64vec3& low, const glm::ivec
 }
 
 FieldRange HollowSphere::range(const glm::i64vec3& low, const glm::i64vec3& high) const {
-    // A voxel's mean tells of the ball inscribed in it, which lies in the box as the voxel does.
+    // The mean of a voxel depends on the ball inscribed in it, which lies in the box as the voxel does.
     const auto [nearest, farthest] = distances(centre_, glm::dvec3(low), glm::dvec3(high));
     if (nearest >= outer_ || farthest <= inner_) return {};
     if (farthest <= outer_ && (nearest >= inner_ || inner_ == 0.0)) return {1.0F, 1.0F};

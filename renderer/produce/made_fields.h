@@ -3,22 +3,23 @@
 #include <cstdint>
 #include <memory>
 
-#include "renderer/produce/volume_field.h"
+#include "renderer/produce/volume.h"
 
 namespace cairn::renderer {
 
-/// A ball, or a shell: density 1 between two radii and 0 elsewhere, known by its formula at any resolution.
-/// The test object of Crassin 2007, section 3.7.
+/// A ball, or a shell: density 1 between two radii and 0 elsewhere, computed by formula at any resolution. It
+/// is the test object of Crassin 2007, section 3.7.
 ///
-/// A voxel's mean is that of a slab: what of the ball inscribed in the voxel lies between the radii, along
-/// the radius.
+/// The mean of a voxel is that of a slab: the share of the diameter of the voxel's inscribed ball, laid along
+/// the radius, that lies between the two radii.
 class HollowSphere final : public Field {
 public:
-    /// The cube that bounds the field has its centre at the world's origin and the given side.
-    /// @param n             of the tree
+    /// The cube that bounds the field has its centre at the world's origin.
+    /// @param n             n of the tree
     /// @param resolution    voxels along the cube's side
     /// @param inner, outer  radii in [0, 1/2] of the side, inner < outer; inner 0: a ball
-    /// @throws Error (Fault::usage) where they are not.
+    /// @param side          side of the cube, world units, above 0
+    /// @throws Error (Fault::usage) if a radius, the resolution or the side is out of range.
     HollowSphere(int n, std::int64_t resolution, double inner, double outer, double side = 2.0);
 
     [[nodiscard]] const FieldFrame& frame() const override { return frame_; }
@@ -39,8 +40,8 @@ private:
 /// every level lie in it as they lie in the field alone.
 class RepeatedField final : public Field {
 public:
-    /// @param copies  along each axis, in [1, 2^20].
-    /// @throws Error (Fault::usage) where they are not.
+    /// @param copies  copies along each axis, in [1, 2^20].
+    /// @throws Error (Fault::usage) if `copies` is out of range.
     RepeatedField(std::shared_ptr<const Field> field, int copies);
 
     [[nodiscard]] const FieldFrame& frame() const override { return frame_; }
@@ -52,10 +53,10 @@ private:
 
     std::shared_ptr<const Field> field_;
     int copies_;
-    int period_power_ = 0;  // a copy is n to this many finest voxels a side
+    int period_power_ = 0;  // a copy has n to this power finest voxels per side
     std::int64_t period_ = 1;
     FieldFrame frame_;
-    float mean_ = 0.0F;  // of a copy
+    float mean_ = 0.0F;  // mean density of a copy
 };
 
 }  // namespace cairn::renderer

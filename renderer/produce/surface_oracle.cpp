@@ -9,16 +9,16 @@
 namespace cairn::renderer {
 namespace {
 
-/// Levels of a pyramid, as log2 of voxels across its tile: the root's is one grid of 2^24 bits (2 MiB), the
-/// others 64^3.
+/// log2 of the cells across a pyramid: that of the root is one grid of 2^24 bits (2 MiB), the others have
+/// 64^3 bits.
 constexpr int root_depth = 8;
 constexpr int patch_depth = 6;
-/// Patches held before they are made anew: 64^3 bits and their pyramid are about 37 KiB.
+/// Patches that are held before they are made anew. 64^3 bits and their pyramid take about 37 KiB.
 constexpr std::size_t patch_limit = 4096;
 
-/// Level of the smallest cells that tell of a tile: the tile itself, or, where tiles are no cells, those of
+/// Level of the smallest cells that decide about a tile: the tile itself, or, if tiles are no cells, cells of
 /// at most a quarter of its side.
-int telling_level(const TreeShape& shape, int tile_level) {
+int level_of_cells(const TreeShape& shape, int tile_level) {
     if (shape.cell_base() == 2) return shape.n_shift() * tile_level;
     const int side = shape.m * shape.voxel_side(tile_level);
     return LATTICE_BITS - int(std::bit_width(unsigned(side) / 4)) + 1;
@@ -33,7 +33,7 @@ SurfaceOracle::SurfaceOracle(const TreeShape& shape, const voxelizer::GpuSurface
       voxelizer_(voxelizer),
       lists_(lists),
       list_step_(tile_list_step(shape)),
-      finest_needed_(telling_level(shape, shape.max_level)) {}
+      finest_needed_(level_of_cells(shape, shape.max_level)) {}
 
 glm::uvec2 SurfaceOracle::child_mask(const Tile& tile) {
     glm::uvec2 mask(0);
@@ -66,7 +66,7 @@ bool SurfaceOracle::is_empty(const Tile& tile) {
 bool SurfaceOracle::may_meet(const Tile& tile) {
     const int side = shape_.m * shape_.voxel_side(tile.level);
     const glm::ivec3 low = glm::ivec3(tile.position) * side;
-    return may_meet({low, low + side}, {0, glm::ivec3(0)}, telling_level(shape_, tile.level));
+    return may_meet({low, low + side}, {0, glm::ivec3(0)}, level_of_cells(shape_, tile.level));
 }
 
 bool SurfaceOracle::may_meet(const Box& box, const voxelizer::Cell& cell, int finest) {

@@ -2,7 +2,7 @@
 
 #include <unordered_map>
 
-#include "renderer/produce/oracle.h"
+#include "renderer/produce/content.h"
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/methods/voxelizer.h"
 #include "voxelizer/surface/surface.h"
@@ -19,10 +19,10 @@ struct CellHash {
 
 /// Cuts node masks from the bitmask pyramid of a surface (Forest et al. 2009, section 2.3).
 ///
-/// One pyramid covers the root cube; below its finest level each of its cells that is asked for gets a
-/// pyramid of its own, voxelized from its own triangles. Where N is a power of two, tiles are cells of the
-/// pyramid, and the masks are exact. With N = 3 a tile counts as empty when all cells around it are that are
-/// a quarter of its side or smaller.
+/// One pyramid covers the root cube. Below its finest level, each of its cells that is asked for gets a
+/// pyramid of its own, voxelized from the cell's triangles. If N is a power of two, tiles are cells of a
+/// pyramid, and the masks are exact. With N = 3, a tile counts as empty if all cells that meet it are empty,
+/// down to cells of a quarter of its side or smaller.
 class SurfaceOracle final : public Oracle {
 public:
     /// Refers to all three, which must outlive it.
@@ -47,10 +47,10 @@ private:
     struct Box {
         glm::ivec3 low, high;
     };
-    /// The one that tells of a cell. Stays until drop_if_too_many().
+    /// The patch that covers a cell. It stays until drop_if_too_many().
     [[nodiscard]] const Patch& patch_for(const voxelizer::Cell& cell);
     void drop_if_too_many();
-    /// May the surface meet a cell's part in the box? Told by cells of level `finest`.
+    /// May the surface meet the part of a cell that lies in the box? Cells of level `finest` decide.
     [[nodiscard]] bool may_meet(const Box& box, const voxelizer::Cell& cell, int finest);
     [[nodiscard]] bool may_meet(const Tile& tile);
 
@@ -59,7 +59,7 @@ private:
     voxelizer::Voxelizer& voxelizer_;
     voxelizer::TriangleIndex& lists_;
     int list_step_;      ///< levels from a cell that has a list to the next
-    int finest_needed_;  ///< level of the smallest cells
+    int finest_needed_;  ///< level of the smallest cells that are needed
     std::unordered_map<voxelizer::Cell, Patch, CellHash> patches_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "renderer/pool/brick_pool.h"
 #include "renderer/produce/tile_lists.h"
 #include "shaders/interop/surface.h"
 #include "shaders/interop/threads.h"
@@ -11,15 +12,14 @@ namespace cairn::renderer {
 namespace {
 
 constexpr std::size_t scratch_budget_bytes = std::size_t(24) << 20U;
-/// Pairs sent to the driver at once.
+/// Pairs that are sent to the driver at once.
 constexpr std::size_t pair_capacity = std::size_t(1) << 18U;
-/// A triangle that crosses a whole brick is cut in pieces, for threads to share and because no thread may
-/// turn its loops too often (docs/decisions/house_and_scenes.md). A voxel takes a turn for itself, 16 for its
-/// rows, and 64 more for an alpha mask.
-constexpr int turns_a_pair = 30000;
-
-/// Of all its mips, border included.
-std::size_t voxels_a_brick(const TreeShape& shape) {
+/// Loop turns of a thread at most. A triangle that crosses a whole brick is cut in pieces, which threads
+/// share, because no thread may turn its loops too often (docs/decisions/house_and_scenes.md). A voxel takes
+/// one turn itself, 16 for its rows, and 64 more for an alpha mask.
+constexpr int turns_per_pair = 30000;
+/// Voxels of all mips of a brick, border included.
+std::size_t voxels_per_brick(const TreeShape& shape) {
     std::size_t voxels = 0;
     for (int mip = 0; mip <= shape.mips; ++mip) {
         const auto side = std::size_t(shape.mip_side(mip));
@@ -28,12 +28,12 @@ std::size_t voxels_a_brick(const TreeShape& shape) {
     return voxels;
 }
 
-std::size_t scratch_bytes_a_brick(const TreeShape& shape, bool has_color) {
-    return voxels_a_brick(shape) * (has_color ? 14 : 11) *
+std::size_t scratch_bytes_per_brick(const TreeShape& shape, bool has_color) {
+    return voxels_per_brick(shape) * (has_color ? 14 : 11) *
            sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
 }
 
-/// The voxels of that side that lattice coordinates lie in: rounded down.
+/// The voxel, of side `voxel`, that lattice coordinates lie in: rounded down.
 glm::ivec3 voxel_of(const glm::ivec3& place, int voxel) {
     const glm::ivec3 cut = place / voxel;
     return cut - glm::ivec3(glm::lessThan(place, cut * voxel));
@@ -46,13 +46,13 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     : shape_(shape),
       surface_(surface),
       lists_(lists),
-      tell_empty_(shape.cell_base() != 2 || surface.has_mask),
+      finds_empty_(shape.cell_base() != 2 || surface.has_mask),
       pairs_(surface.chunks.size()) {
-    const std::size_t brick_bytes = scratch_bytes_a_brick(shape, surface.has_color);
+    const std::size_t brick_bytes = scratch_bytes_per_brick(shape, surface.has_color);
     batch_ = int(std::clamp<std::size_t>(scratch_budget_bytes / brick_bytes, 1, 0xFFFF));
     gl::Defines defines = shape.defines(surface.has_color);
     resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
-    defines.emplace_back("TELL_EMPTY", tell_empty_ ? "1" : "0");
+    defines.emplace_back("FINDS_EMPTY", finds_empty_ ? "1" : "0");
     defines.emplace_back("HAS_MASK", surface.has_mask ? "1" : "0");
     masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
     summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
@@ -60,22 +60,22 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
 
     scratch_ = gl::Buffer(std::size_t(batch_) * brick_bytes, "brick scratch");
     scratch_.fill(0);
-    // Masks of all voxels of a batch stand before their sums (scratch.glsl).
+    // The masks of all voxels of a batch stand before the sums (scratch.glsl).
     for (gl::Program* program : {&splat_, &resolve_})
-        program->set("sums_offset", unsigned(std::size_t(batch_) * voxels_a_brick(shape) * 2));
+        program->set("sums_offset", unsigned(std::size_t(batch_) * voxels_per_brick(shape) * 2));
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
-    if (tell_empty_)
+    if (finds_empty_)
         found_ = gl::Buffer(std::size_t(batch_) * sizeof(std::uint32_t), "bricks that hold anything");
     pair_buffer_ = gl::Buffer(pair_capacity * sizeof(interop::BrickPair), "brick pairs");
 }
 
-std::vector<Produced> SurfaceProducer::produce(std::span<const BrickRequest> requests,
-                                               const BrickPool& pool) {
-    std::vector<Produced> produced(requests.size());
+std::vector<ProducedTile> SurfaceProducer::produce(std::span<const BrickRequest> requests,
+                                                   const BrickPool& pool) {
+    std::vector<ProducedTile> produced(requests.size());
     for (std::size_t i = 0; i < requests.size(); i += std::size_t(batch_)) {
         const std::size_t count = std::min(std::size_t(batch_), requests.size() - i);
         produce_batch(requests.subspan(i, count), pool);
-        if (!tell_empty_) continue;
+        if (!finds_empty_) continue;
         const auto found = found_.read_all<std::uint32_t>(count);
         for (std::size_t k = 0; k < count; ++k)
             produced[i + k].constant = found[k] == 0;
@@ -97,7 +97,7 @@ void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
 void SurfaceProducer::gather_pairs_of_mip(const Tile& tile, std::uint32_t number, int mip,
                                           std::span<const std::uint32_t> triangles) {
     const int side = shape_.mip_side(mip);
-    const int rows = std::max(1, turns_a_pair / (side * (surface_.has_mask ? 81 : 17)));
+    const int rows = std::max(1, turns_per_pair / (side * (surface_.has_mask ? 81 : 17)));
     const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
     const int voxel = shape_.voxel_side(tile.level) << mip;
     const glm::ivec3 low = glm::ivec3(tile.position) * (shape_.m >> mip) - 1;  // of the border
@@ -156,17 +156,17 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, cons
     pack(requests.size(), pool);
 }
 
-/// Turns what was gathered for the batch into bricks.
+/// Turns the gathered masks and sums of the batch into bricks.
 void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
     const auto count = unsigned(tile_count);
     tiles_.bind_storage(SSBO_BRICK_TILES);
     scratch_.bind_storage(SSBO_BRICK_SCRATCH);
     pool.bind_for_writing();
-    if (tell_empty_) {
+    if (finds_empty_) {
         found_.fill(0);
         found_.bind_storage(SSBO_BRICK_FOUND);
     }
-    auto run = [&](const gl::Program& program, std::size_t threads) {
+    auto dispatch = [&](const gl::Program& program, std::size_t threads) {
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
         program.use();
         program.set("tile_count", count);
@@ -174,13 +174,13 @@ void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
     };
     for (int mip = 0; mip <= shape_.mips; ++mip) {
         masks_.set("mip", mip);
-        run(masks_, count * std::size_t(shape_.blocks(mip)));
+        dispatch(masks_, count * std::size_t(shape_.blocks(mip)));
     }
-    run(summarize_, count * ((std::size_t(shape_.blocks()) + 63) / 64));
+    dispatch(summarize_, count * ((std::size_t(shape_.blocks()) + 63) / 64));
     glMemoryBarrier(
         GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // rays of an earlier pass may still read evicted slots
     resolve_.set("pool_levels", pool.levels());
-    run(resolve_, count * voxels_a_brick(shape_));
+    dispatch(resolve_, count * voxels_per_brick(shape_));
     // The next batch reuses the scratch; rays fetch the texels.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);

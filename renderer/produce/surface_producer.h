@@ -5,24 +5,24 @@
 
 #include "gl/buffer.h"
 #include "gl/program.h"
-#include "renderer/produce/producer.h"
+#include "renderer/produce/content.h"
 #include "shaders/interop/produce.h"
 #include "voxelizer/surface/surface.h"
 #include "voxelizer/surface/triangle_index.h"
 
 namespace cairn::renderer {
 
-/// Fills bricks by voxelizing the tile's region four times finer, from the triangles of the tile's own list:
-/// coverage from the finer bits, base colour and normal as means over them. All on the GPU, many bricks at
-/// once. Each mip is voxelized like a brick of its own, so that it equals the matching part of the parent's
-/// brick.
+/// Fills bricks by voxelizing the tile's region four times finer, from the triangles in the tile's list:
+/// coverage is the share of finer bits, base colour and normal are means over them. All work is on the GPU,
+/// for many bricks at once. Each mip is voxelized like a brick of its own, so that it equals the matching
+/// part of the parent's brick.
 class SurfaceProducer final : public Producer {
 public:
     /// Refers to the surface and the lists, which must outlive it.
     SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface,
                     voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders);
 
-    std::vector<Produced> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+    std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
 
 private:
     void produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool);
@@ -35,9 +35,9 @@ private:
     TreeShape shape_;
     const voxelizer::GpuSurface& surface_;
     voxelizer::TriangleIndex& lists_;
-    /// The oracle may let tiles through that hold nothing: with N = 3, and where it decides alpha masks
-    /// exactly and bricks sample them. Then the driver is asked.
-    bool tell_empty_;
+    /// The oracle may let empty tiles through: with N = 3, and with alpha masks, which the oracle decides
+    /// exactly and bricks sample. Then the shaders report which bricks are empty.
+    bool finds_empty_;
     int batch_ = 1;
     gl::Program splat_;
     gl::Program masks_;
@@ -48,7 +48,7 @@ private:
     gl::Buffer scratch_;
     gl::Buffer pair_buffer_;
     std::vector<std::uint32_t> listed_;                   // triangles of a tile
-    std::vector<std::vector<interop::BrickPair>> pairs_;  // one list a surface chunk
+    std::vector<std::vector<interop::BrickPair>> pairs_;  // one list per surface chunk
 };
 
 }  // namespace cairn::renderer

@@ -19,7 +19,7 @@ std::vector<TileQuery> bricks_first(std::span<const TileQuery> queries, const Tr
     return sorted;
 }
 
-/// Asked for by most rays first, the coarsest first among equals.
+/// Sorts queries: those of most rays first, and among equals the coarsest tiles first.
 std::vector<TileQuery> most_rays_first(std::span<const TileQuery> queries, const Tree& tree) {
     std::vector<TileQuery> sorted(queries.begin(), queries.end());
     const auto level = [&](const TileQuery& query) { return tree.tile(query.entry).level; };
@@ -38,7 +38,7 @@ TileCache::TileCache(std::unique_ptr<Content> content, const PoolSizes& sizes)
             content_->has_constant()) {
     if (sizes.cache_bytes == 0) return;
     if (content_->has_low_frequency()) {
-        throw Error(Fault::usage, "brick cache", "it cannot tell which tiles of this content are final",
+        throw Error(Fault::usage, "brick cache", "it does not record which tiles of this content are final",
                     "leave it out");
     }
     cache_.emplace(pool_, sizes.cache_bytes);
@@ -68,7 +68,7 @@ TileCache::Answer TileCache::answer_until(std::span<const TileQuery> queries, co
         const std::size_t batch = pace_.batch(milliseconds(budget.deadline - start));
         const std::size_t before = all.count();
         for (; next != urgent.end() && all.count() - before < batch; ++next)
-            settle(*next, next->kind != QueryKind::stand_in && !budget.is_ahead, all);
+            settle(*next, next->kind != QueryKind::stand_in && !budget.is_prefetch, all);
         produce_requests();
         glFinish();
         pace_.learn(milliseconds_since(start), all.count() - before);
@@ -76,12 +76,12 @@ TileCache::Answer TileCache::answer_until(std::span<const TileQuery> queries, co
     return all;
 }
 
-/// Gives the tile children, or a slot that produce_requests() fills, if it still wants what was asked for.
-/// @param may_stay  as of Tree::add_brick().
+/// Gives the tile children, or a slot that produce_requests() fills, if the tile still lacks it.
+/// @param may_stay  as in Tree::add_brick().
 void TileCache::settle(const TileQuery& query, bool may_stay, Answer& answer) {
     const bool for_children = query.kind == QueryKind::children;
     if (for_children && !tree_.wants_children(query.entry)) return;
-    // Where only a tile's own brick tells whether anything finer would show, that comes first.
+    // If only the tile's own brick decides whether anything finer would show, the brick comes first.
     const bool needs_brick =
         !for_children || (content_->has_low_frequency() && !tree_.was_produced(query.entry));
     if (needs_brick) {
@@ -123,7 +123,7 @@ bool TileCache::request(std::uint32_t entry, bool may_stay) {
     return true;
 }
 
-/// Answers from main memory what is there.
+/// Restores the requested bricks that main memory holds.
 void TileCache::restore_requests() {
     cache_->store(tree_.take_evicted());
     const auto start = Clock::now();
@@ -139,10 +139,10 @@ void TileCache::restore_requests() {
     counted_.upload_ms += milliseconds_since(start);
 }
 
-/// Puts bricks in the slots that they were given: from main memory where they are there, else produced.
+/// Fills the requested slots: with bricks from main memory if it holds them, else with produced ones.
 void TileCache::produce_requests() {
     if (cache_) restore_requests();
-    const std::vector<Produced> found = content_->producer().produce(requests_, pool_);
+    const std::vector<ProducedTile> found = content_->producer().produce(requests_, pool_);
     for (std::size_t i = 0; i < found.size(); ++i) {
         const std::uint32_t entry = requested_entries_[i];
         if (content_->has_low_frequency()) tree_.set_produced(entry);

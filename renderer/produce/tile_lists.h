@@ -12,16 +12,17 @@
 
 namespace cairn::renderer {
 
-/// Numbers that the lists of tiles may hold: 256 MiB.
+/// Triangle numbers that the lists of tiles may hold together: 256 MiB.
 constexpr std::size_t tile_list_limit = std::size_t(64) << 20U;
 
-/// Levels from a cell that has a list to the next. Where n is a power of two, cells are the tiles of a tree.
+/// Levels from a cell that has a list to the next one that has. If n is a power of two, cells are the tiles
+/// of a tree.
 [[nodiscard]] inline int tile_list_step(const TreeShape& shape) {
     return shape.cell_base() == 2 ? shape.n_shift() : 2;
 }
 
-/// The index whose cells are the tiles of a tree, each list with what touches one voxel of border: of the
-/// coarsest mip. With n = 3, whose tiles are no cells, lists have no border.
+/// The index whose cells are the tiles of a tree. The list of a cell includes what touches its border, one
+/// voxel of the coarsest mip wide. With n = 3, whose tiles are no cells, lists have no border.
 [[nodiscard]] inline voxelizer::TriangleIndex tile_lists(const TreeShape& shape,
                                                          const voxelizer::Surface& surface,
                                                          std::size_t held_limit = tile_list_limit) {
@@ -36,14 +37,15 @@ constexpr std::size_t tile_list_limit = std::size_t(64) << 20U;
     return {shape.n_shift() * tile.level, glm::ivec3(tile.position)};
 }
 
-/// Those that may touch a tile or its border: global triangle numbers, ascending.
-/// @param out  where they stand when no list of the index holds just them; may be any other list's.
-/// @return     valid until the next call, and as long as `out` is
+/// Triangles that may touch a tile or its border: global numbers, ascending.
+/// @param out  filled with the numbers if no list of the index holds just these triangles.
+/// @return     valid until the next call, and for as long as `out` is.
 [[nodiscard]] inline std::span<const std::uint32_t> triangles_of(const Tile& tile, const TreeShape& shape,
                                                                  voxelizer::TriangleIndex& lists,
                                                                  std::vector<std::uint32_t>& out) {
     if (shape.cell_base() == 2) return lists.list(cell_of(tile, shape));
-    // The finest voxels are the largest power of two of lattice units that all tiles are whole numbers of.
+    // The side of the finest voxels is the largest power of two of lattice units that divides all tiles'
+    // sides.
     const int finest = shape.voxel_side(shape.max_level);
     const int voxel = shape.voxel_side(tile.level) / finest;
     const glm::ivec3 low = (glm::ivec3(tile.position) * shape.m - 1) * voxel;

@@ -4,18 +4,21 @@
 
 namespace cairn::renderer {
 
-/// What a tile is asked for.
+/// What rays ask of a tile.
 enum class QueryKind : std::uint8_t {
-    children,  ///< the node must be subdivided
-    brick,     ///< the node's brick must be produced
-    stand_in,  ///< the node's brick could stand in for what is missing below it; no ray waits for it
+    /// The node must be subdivided.
+    children,
+    /// The node's brick must be produced.
+    brick,
+    /// The node's brick could stand in for what is missing below the node. No ray waits for it.
+    stand_in,
 };
 
 /// What a ray misses (Crassin et al. 2008, section 5.3).
 struct TileQuery {
-    std::uint32_t entry = 0;  ///< the tile's, in the node pool
+    std::uint32_t entry = 0;  ///< entry of the tile in the node pool
     QueryKind kind = QueryKind::children;
-    std::uint32_t rays = 0;  ///< that ask for it; 0 where nobody counted
+    std::uint32_t rays = 0;  ///< rays that ask; 0 if the pass does not count them
 
     bool operator==(const TileQuery&) const = default;
 };

@@ -14,7 +14,7 @@ TransferTable::TransferTable(const TransferFunction& function, const VolumeOptio
                              double voxel_size)
     : view_(sizeof(interop::VolumeView), "volume view") {
     if (options.steps_per_voxel < 1 || options.steps_per_voxel > VOLUME_MOST_STEPS) {
-        throw Error(Fault::usage, "volume", fmt::format("{} steps a voxel", options.steps_per_voxel),
+        throw Error(Fault::usage, "volume", fmt::format("{} steps per voxel", options.steps_per_voxel),
                     fmt::format("1 to {} are possible", VOLUME_MOST_STEPS));
     }
     if (!(options.full_gradient >= 0.0 && options.shadow_start >= 0.0))

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "renderer/pool/brick_pool.h"
 
 namespace cairn::renderer {
 namespace {
@@ -15,14 +16,15 @@ namespace {
 /// Texels that are made and sent at once.
 constexpr std::size_t batch_bytes = std::size_t(4) << 20U;
 
-std::int64_t power(int n, int exponent) {
+/// Side of a voxel of a coarseness, in finest voxels: n to that power.
+std::int64_t voxel_side(int n, int coarseness) {
     std::int64_t side = 1;
-    for (int i = 0; i < exponent; ++i)
+    for (int i = 0; i < coarseness; ++i)
         side *= n;
     return side;
 }
 
-/// As a brick stores it. Monotonic, so bounds of a density become bounds of what is stored.
+/// A density as a brick stores it. Monotonic, so bounds of a density become bounds of what is stored.
 std::uint8_t stored(float density) {
     return std::uint8_t(std::lround(std::clamp(density, 0.0F, 1.0F) * 255.0F));
 }
@@ -43,9 +45,9 @@ public:
         std::transform(values.begin(), values.end(), texels_, stored);
     }
 
-    /// Densities that are alike and not seen are as good as nothing. The density 0, where it is seen, cannot
-    /// be told from that, and keeps its brick.
-    [[nodiscard]] Produced analyse(const DensityTest& test) const {
+    /// Densities that are alike and not visible count as empty. A tile of density 0 that is visible would be
+    /// taken for an empty one, and so keeps its brick.
+    [[nodiscard]] ProducedTile analyse(const DensityTest& test) const {
         const auto [low, high] = std::minmax_element(texels_, texels_ + count());
         std::uint64_t sum = 0;
         const int m = side_ - 2;
@@ -60,7 +62,7 @@ public:
         return {.constant = alike, .mean = glm::u8vec4(shows ? mean : 0, 0, 0, 0)};
     }
 
-    /// Summary words, then a word a block (shaders/pool/brick_masks.glsl).
+    /// Writes the summary words, then one word per block (shaders/pool/brick_masks.glsl).
     void write_masks(const DensityTest& test, std::uint64_t* words) const {
         std::vector<std::uint8_t> low(texels_, texels_ + count());
         std::vector<std::uint8_t> high = low;
@@ -70,7 +72,7 @@ public:
             high = spread(high, step, [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
         }
         const int m = side_ - 2;
-        const int side = m % 3 == 0 ? 3 : 4;  // of a block: where n = 3, bricks are cut in thirds
+        const int side = m % 3 == 0 ? 3 : 4;  // side of a block: with n = 3, bricks are cut in thirds
         const int blocks = m / side;
         const int block_count = blocks * blocks * blocks;
         const int summaries = (block_count + 63) / 64;
@@ -93,8 +95,8 @@ private:
     [[nodiscard]] std::size_t at(int x, int y, int z) const {
         return std::size_t(x) + std::size_t(side_) * (std::size_t(y) + std::size_t(side_) * std::size_t(z));
     }
-    /// Of each voxel and its neighbours one step before and behind. Voxels of the border mix in what is not
-    /// their neighbour, but no voxel within reads those along the same axis again.
+    /// The chosen value of each voxel and its neighbours one step before and behind. Voxels of the border mix
+    /// in voxels that are not their neighbours, but no inner voxel reads them along the same axis again.
     template <typename Choose>
     [[nodiscard]] static std::vector<std::uint8_t> spread(const std::vector<std::uint8_t>& from,
                                                           std::size_t step, Choose choose) {
@@ -109,7 +111,7 @@ private:
 };
 
 voxelizer::Grid grid_of(const VolumeShape& shape, const FieldFrame& frame) {
-    const auto finest = double(power(frame.n, shape.finest_coarseness));
+    const auto finest = double(voxel_side(frame.n, shape.finest_coarseness));
     return {frame.origin, frame.voxel_size * finest, glm::ivec3(shape.tree.resolution())};
 }
 
@@ -152,9 +154,9 @@ glm::uvec2 VolumeOracle::child_mask(const Tile& tile) {
 }
 
 bool VolumeOracle::is_empty(const Tile& tile) {
-    const std::int64_t voxel = power(shape_.tree.n, shape_.coarseness(tile.level));
+    const std::int64_t voxel = voxel_side(shape_.tree.n, shape_.coarseness(tile.level));
     const std::int64_t side = voxel * shape_.tree.m;
-    // With a voxel around it: fetches near its sides mix that in. Finer levels mix in less.
+    // The tile with one voxel around it: fetches near the tile's sides mix that in. Finer levels mix in less.
     const glm::i64vec3 low = tile.position * side;
     const FieldRange range = field_.range(low - voxel, low + side + voxel);
     return !test_.shows(stored(range.low), stored(range.high));
@@ -167,12 +169,13 @@ VolumeProducer::VolumeProducer(const VolumeShape& shape, const Field& field, con
     upload_ = gl::Buffer(batch_ * brick.count(), "brick upload");
 }
 
-std::vector<Produced> VolumeProducer::produce(std::span<const BrickRequest> requests, const BrickPool& pool) {
-    std::vector<Produced> produced(requests.size());
+std::vector<ProducedTile> VolumeProducer::produce(std::span<const BrickRequest> requests,
+                                                  const BrickPool& pool) {
+    std::vector<ProducedTile> produced(requests.size());
     upload_ms_ = 0.0;
     for (std::size_t i = 0; i < requests.size(); i += batch_) {
         const std::size_t count = std::min(batch_, requests.size() - i);
-        std::vector<Produced> part(count);
+        std::vector<ProducedTile> part(count);
         produce_batch(requests.subspan(i, count), pool, part);
         std::copy(part.begin(), part.end(), produced.begin() + std::ptrdiff_t(i));
     }
@@ -180,7 +183,7 @@ std::vector<Produced> VolumeProducer::produce(std::span<const BrickRequest> requ
 }
 
 void VolumeProducer::produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool,
-                                   std::vector<Produced>& produced) {
+                                   std::vector<ProducedTile>& produced) {
     const TreeShape& tree = shape_.tree;
     const std::size_t texels = BrickVoxels(tree.m, nullptr).count();
     const std::size_t words = pool.mask_words();

@@ -7,44 +7,43 @@
 
 #include "gl/buffer.h"
 #include "renderer/produce/content.h"
-#include "renderer/produce/transfer_function.h"
 #include "renderer/produce/transfer_table.h"
-#include "renderer/produce/volume_field.h"
+#include "renderer/produce/volume.h"
 
 namespace cairn::renderer {
 
-/// Which of the 256 densities that a brick tells apart are visible. What lies between two is visible when one
-/// is.
+/// Marks the visible ones of the 256 densities that a brick distinguishes. A density between two of them is
+/// visible if one of the two is.
 using VisibleDensities = std::array<bool, 256>;
 
-/// Do densities within bounds show?
+/// Tests whether densities within bounds are visible.
 class DensityTest {
 public:
     explicit DensityTest(const VisibleDensities& visible);
-    /// Both bounds belong to it.
+    /// Is any density in [low, high] visible?
     [[nodiscard]] bool shows(std::uint8_t low, std::uint8_t high) const {
         return before_[high + 1U] != before_[low];
     }
 
 private:
-    std::array<std::uint16_t, 257> before_{};  // visible densities under each
+    std::array<std::uint16_t, 257> before_{};  // visible densities below each density
 };
 
 /// A tree's shape and the field's coarseness at its finest level.
 struct VolumeShape {
     TreeShape tree;
-    int finest_coarseness = 0;  ///< above 0 where the resolution was limited
+    int finest_coarseness = 0;  ///< above 0 if the resolution was limited
 
     /// Coarseness of the voxels of a level.
     [[nodiscard]] int coarseness(int level) const { return finest_coarseness + tree.max_level - level; }
 };
 
-/// The least tree that holds the field at its finest; cut off at `max_resolution` voxels across the root
-/// cube.
-/// @throws Error (Fault::usage) as make_tree_shape does, and when the field is made for another n.
+/// The least tree that holds the field at its finest, but with at most `max_resolution` voxels across the
+/// root cube.
+/// @throws Error (Fault::usage) as make_tree_shape() does, and if the field is made for another n.
 [[nodiscard]] VolumeShape make_volume_shape(const FieldFrame& frame, int n, int m, int max_resolution);
 
-/// Tells empty tiles by the bounds of what the field holds there, the brick's border included.
+/// Finds empty tiles by the bounds of the field's densities there, the border of the brick included.
 class VolumeOracle final : public Oracle {
 public:
     /// Refers to the field and the test, which must outlive it.
@@ -59,17 +58,17 @@ private:
 };
 
 /// Fills bricks with densities on the CPU, many at once, and uploads them through a pixel-unpack buffer. A
-/// voxel is marked in the masks when a trilinear fetch anywhere in it may be visible.
+/// voxel is marked in the masks if a trilinear fetch anywhere in it may be visible.
 class VolumeProducer final : public Producer {
 public:
     /// Refers to the field and the test, which must outlive it.
     VolumeProducer(const VolumeShape& shape, const Field& field, const DensityTest& test);
-    std::vector<Produced> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+    std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
     [[nodiscard]] double upload_ms() const override { return upload_ms_; }
 
 private:
     void produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool,
-                       std::vector<Produced>& produced);
+                       std::vector<ProducedTile>& produced);
 
     VolumeShape shape_;
     const Field& field_;
@@ -81,12 +80,12 @@ private:
     double upload_ms_ = 0.0;
 };
 
-/// A field of densities: what Crassin et al. 2008 explore.
+/// A field of densities, as Crassin et al. 2008 explore them.
 ///
-/// What is visible is fixed here: a transfer function that shows other densities needs another content.
+/// The transfer function is fixed: one that shows other densities needs another content.
 class VolumeContent final : public Content {
 public:
-    /// @throws Error (Fault::usage) for VolumeOptions out of range.
+    /// @throws Error (Fault::usage) if VolumeOptions are out of range.
     VolumeContent(const VolumeShape& shape, std::shared_ptr<const Field> field,
                   const TransferFunction& transfer, const VolumeOptions& options = {});
 

@@ -21,7 +21,7 @@ constexpr std::size_t texel_bytes = COLUMN_TEXEL_BITS / 8;
 int levels_of(int resolution) {
     if (resolution < 1 << COLUMN_LEAST_LEVELS || resolution > 1 << COLUMN_MOST_LEVELS ||
         !std::has_single_bit(unsigned(resolution))) {
-        throw Error(Fault::usage, "pyramid", fmt::format("{} voxels a side", resolution),
+        throw Error(Fault::usage, "pyramid", fmt::format("{} voxels per side", resolution),
                     fmt::format("choose a power of two from {} to {}", 1 << COLUMN_LEAST_LEVELS,
                                 1 << COLUMN_MOST_LEVELS));
     }
@@ -43,10 +43,10 @@ std::size_t checked_bytes(int levels) {
         texels += texels_of_level(levels, level);
     const gl::Limits limits = gl::query_limits();
     const std::size_t coarse = texels - texels_of_level(levels, 0);
-    // Texels are fetched, and those of coarser levels written as storage.
+    // All texels are fetched; those of coarser levels are written as storage too.
     if (texels > limits.texture_buffer_texels || coarse * texel_bytes > limits.shader_storage_bytes) {
         throw Error(Fault::memory, "pyramid",
-                    fmt::format("{} voxels a side take {} MiB, more than a shader of this driver can see",
+                    fmt::format("{} voxels per side take {} MiB, more than a shader of this driver can see",
                                 1 << levels, texels * texel_bytes >> 20U),
                     "choose half the resolution");
     }

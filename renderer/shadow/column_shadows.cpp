@@ -45,7 +45,7 @@ std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, 
     const gl::Program& lighting = programs_.get({mask_, view.is_soft != 0});
     lighting.set("mesh_first_row", receivers.first_row);
     lighting.set("mesh_shadows", 1);
-    lighting.set("mesh_own_height", receivers.own_height);
+    lighting.set("mesh_self_shadow_height", receivers.self_shadow_height);
     glFinish();
     const auto start = std::chrono::steady_clock::now();
     view_.bind_uniform(UBO_VIEW);
@@ -57,7 +57,7 @@ std::vector<std::uint32_t> ColumnShadows::light(const interop::MarchView& view, 
     glBindTextureUnit(TEXTURE_MESH_SURFACE, receivers.surface);
     glm::uvec4 counts(1);
     for (last_passes_ = 0; counts.x != 0; ++last_passes_) {
-        // Each pass ends a ray at least of every pixel.
+        // Each pass ends at least one ray of every pixel.
         if (last_passes_ > MAX_SHADOW_RAYS)
             throw Error(Fault::internal, "shadow rays", "a ray did not come to an end");
         counts_.fill(0);

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "optics/light.h"
+#include "renderer/shadow/shadow_checks.h"
 #include "renderer/shadow/shadow_mesh.h"
 #include "renderer/shadow/shadow_projection.h"
 
@@ -28,7 +29,7 @@ glm::dmat4 clip_from_world(const View& view, const scenes::Bounds& bounds) {
         furthest = std::max(furthest, depth);
     }
     if (bounds.empty() || !(furthest > 0.0)) furthest = 1.0;
-    // So far behind all that is there that it is not clipped by rounding, were the near plane the least.
+    // The far plane is so far behind the scene that rounding clips nothing, even with the nearest near plane.
     furthest *= 2.0;
     nearest = std::clamp(0.999 * nearest, 1e-5 * furthest, 0.999 * furthest);
     return glm::perspective(view.camera.yfov, view.size.aspect(), nearest, furthest) * camera;
@@ -57,7 +58,7 @@ void check_sides(const ShadowScene& scene) {
         if (!is_of(scene.casters, i) || !is_of(scene.receivers, i) || nodes[i].mesh < 0) continue;
         throw Error(Fault::usage, scene.scene.name,
                     fmt::format("node {} \"{}\" is both occluder and receiver", i, nodes[i].name),
-                    "soft shadow maps know no self-shadowing: let it be one of them");
+                    "soft shadow maps have no self-shadowing: let it be one of them");
     }
 }
 
@@ -66,7 +67,7 @@ scenes::Snapshot part_of(const scenes::Snapshot& snapshot, const scenes::Scene& 
     return scenes::part_of(snapshot, selection.value_or(scenes::NodeSelection(scene.nodes.size(), true)));
 }
 
-/// What there is at one moment.
+/// Occluders and receivers at one moment.
 struct MapSides {
     MapSides(const ShadowScene& scene, const scenes::Snapshot& snapshot)
         : occluders(part_of(snapshot, scene.scene, scene.casters)),
@@ -94,13 +95,13 @@ struct MapShadows::Impl {
     }
 
     ShadowScene scene;
-    scenes::Snapshot moved;  ///< what `sides` is of after a move
+    scenes::Snapshot moved;  ///< after a move: the snapshot that `sides` refers to
     std::optional<MapSides> sides;
     SoftShadowMap map;
     ShadowProjection projection;
     std::optional<ShadowFrustum> frustum;
     std::vector<float> distances;
-    double move_ms = 0.0;  ///< since the last picture
+    double move_ms = 0.0;  ///< time of moves since the last picture
 };
 
 MapShadows::MapShadows(const ShadowScene& scene, const SoftShadowOptions& options,

@@ -12,6 +12,7 @@
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/shadow/column_pyramid.h"
 #include "renderer/shadow/column_shadows.h"
+#include "renderer/shadow/shadow_checks.h"
 #include "shaders/interop/march.h"
 #include "shaders/interop/mesh.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
@@ -48,9 +49,9 @@ struct PyramidShadows::Impl {
     std::optional<voxelizer::GpuSurface> still;
     std::optional<voxelizer::MovingSurface> moving;
     std::optional<MeshRaster> raster;
-    bool raster_on_cpu = false;  ///< it shows a surface that the CPU built for one moment
-    bool is_built = false;       ///< the pyramid is that of the surface as it stands
-    double move_ms = 0.0;        ///< since the last frame
+    bool raster_on_cpu = false;  ///< `raster` shows a surface that the CPU built for one moment
+    bool is_built = false;       ///< `pyramid` is that of the surface at its moment
+    double move_ms = 0.0;        ///< time of moves since the last picture
 };
 
 void PyramidShadows::Impl::build_pyramid(ShadowTimes& times) {
@@ -65,20 +66,20 @@ void PyramidShadows::Impl::build_pyramid(ShadowTimes& times) {
 
 /// @param shown  SHOW_SURFACE or SHOW_LIGHT
 std::vector<std::uint32_t> PyramidShadows::Impl::light(const View& view, int shown, ShadowTimes& times) {
-    interop::MarchView marched = march_view(view, grid);
-    marched.shown = shown;
-    marched.background_pixel = 0;
+    interop::MarchView ray_view = march_view(view, grid);
+    ray_view.shown = shown;
+    ray_view.background_pixel = 0;
     std::vector<std::uint32_t> pixels;
-    for (int row = 0; row < view.size.height; row += marched.row_count) {
+    for (int row = 0; row < view.size.height; row += ray_view.row_count) {
         const auto drawing = Clock::now();
-        const MeshSurface mesh = raster->draw_surface(marched, {grid.origin, grid.voxel_size}, row);
+        const MeshSurface mesh = raster->draw_surface(ray_view, {grid.origin, grid.voxel_size}, row);
         glFinish();
         times.raster_ms += milliseconds_since(drawing);
         const int end = std::min(mesh.first_row + mesh.rows, view.size.height);
-        marched.first_row = row;
-        marched.row_count = end - row;
-        const auto band =
-            shadows.light(marched, pyramid, {mesh.first_row, mesh.nearest, mesh.surface, MESH_OWN_HEIGHT});
+        ray_view.first_row = row;
+        ray_view.row_count = end - row;
+        const auto band = shadows.light(
+            ray_view, pyramid, {mesh.first_row, mesh.nearest, mesh.surface, MESH_SELF_SHADOW_HEIGHT});
         pixels.insert(pixels.end(), band.begin(), band.end());
         times.trace_ms += shadows.last_milliseconds();
         times.passes += shadows.last_passes();

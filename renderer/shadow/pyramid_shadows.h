@@ -4,22 +4,22 @@
 
 #include "gl/shader_source.h"
 #include "renderer/shadow/shadow_base.h"
-#include "renderer/shadow/shadow_options.h"
 
 namespace cairn::renderer {
 
-/// Pictures of rasterized surfaces with shadow rays through the xy-reduced pyramid of their own voxels, all
-/// of one size (Forest et al. 2009, section 3.1). Nothing is kept from one moment to the next, so scenes may
-/// move (voxelizer/surface/moving_surface.h). Light, samples, shading and the start of rays are those of
+/// Pictures of rasterized surfaces with shadow rays through the xy-reduced pyramid of the surfaces' voxels,
+/// all of one size (Forest et al. 2009, section 3.1). Nothing is kept from one moment to the next, so scenes
+/// may move (voxelizer/surface/moving_surface.h). Light, samples, shading and the start of rays are those of
 /// Renderer with Mix::voxels_hidden.
 ///
-/// Of a view, its level of detail and ShadowQuality::pixel_error do not count: voxels have one size. Rays are
-/// no cones. All that is shown throws and takes shadows. ShadowTimes::shadow_ms is `trace_ms`.
+/// The level of detail of a view and ShadowQuality::pixel_error are ignored, because voxels have one size.
+/// Cones are refused. Everything that is shown casts and receives shadows. ShadowTimes::shadow_ms is
+/// `trace_ms`.
 class PyramidShadows final : public ShadowRenderer {
 public:
     /// The scene and the snapshot are needed afterwards only with a motion.
-    /// @throws Error  Fault::usage for a resolution out of range, or a node of the snapshot that is no caster
-    ///                or no receiver; Fault::memory when it does not fit.
+    /// @throws Error  Fault::usage if the resolution is out of range, or if a node of the snapshot is no
+    ///                caster or no receiver; Fault::memory if the scene does not fit.
     explicit PyramidShadows(const ShadowScene& scene, const PyramidShadowOptions& options = {},
                             const gl::ShaderSource& shaders = {});
     ~PyramidShadows() override;

@@ -6,8 +6,8 @@
 namespace cairn::renderer {
 namespace {
 
-/// Tangents and depths of triangles, as far as they are not nearer than the near plane.
-struct Seen {
+/// Bounds of the tangents and depths of triangles, behind the near plane.
+struct ViewBounds {
     glm::dvec2 low{1e300};
     glm::dvec2 high{-1e300};
     double least_depth = 1e300;
@@ -30,8 +30,8 @@ struct Seen {
     [[nodiscard]] bool nothing() const { return low.x > high.x; }
 };
 
-Seen seen_of(const glm::dmat4& from_world, const scenes::Snapshot& snapshot, double near_distance) {
-    Seen seen;
+ViewBounds bounds_of(const glm::dmat4& from_world, const scenes::Snapshot& snapshot, double near_distance) {
+    ViewBounds seen;
     for (const scenes::Item& item : snapshot.items) {
         const scenes::Primitive& primitive = *item.primitive;
         if (primitive.topology != scenes::Topology::triangles) continue;
@@ -60,7 +60,7 @@ double greatest_depth(const glm::dmat4& from_world, const scenes::Snapshot& snap
     return depth;
 }
 
-/// Never without an extent: a sheet seen edge-on has none along one axis.
+/// A window with an extent along both axes, even around a sheet that is seen edge-on.
 ShadowWindow window_of(glm::dvec2 low, glm::dvec2 high) {
     constexpr double least = 1e-5;
     for (int axis = 0; axis < 2; ++axis) {
@@ -84,17 +84,18 @@ ShadowFrustum fit_shadow_frustum(const optics::Light& light, const scenes::Snaps
             std::max(greatest_depth(from_world, occluders), greatest_depth(from_world, receivers));
         frustum.near_distance = depth > 0.0 ? 1e-3 * depth : 1.0;
     }
-    const Seen casts = seen_of(from_world, occluders, frustum.near_distance);
-    const Seen takes = seen_of(from_world, receivers, frustum.near_distance);
-    if (!casts.nothing()) frustum.occluders = window_of(casts.low, casts.high);
-    if (takes.nothing()) return frustum;
-    frustum.receivers = window_of(takes.low, takes.high);
-    if (casts.nothing()) return frustum;
+    const ViewBounds occluder_bounds = bounds_of(from_world, occluders, frustum.near_distance);
+    const ViewBounds receiver_bounds = bounds_of(from_world, receivers, frustum.near_distance);
+    if (!occluder_bounds.nothing()) frustum.occluders = window_of(occluder_bounds.low, occluder_bounds.high);
+    if (receiver_bounds.nothing()) return frustum;
+    frustum.receivers = window_of(receiver_bounds.low, receiver_bounds.high);
+    if (occluder_bounds.nothing()) return frustum;
     // Penumbra extents reach furthest for the nearest occluder and the furthest receiver (Atty et al., 3.3).
     const glm::dvec2 reach =
-        optics::half_size(light) * std::max(0.0, 1.0 / casts.least_depth - 1.0 / takes.greatest_depth);
-    const glm::dvec2 low = glm::max(takes.low, casts.low - reach);
-    const glm::dvec2 high = glm::min(takes.high, casts.high + reach);
+        optics::half_size(light) *
+        std::max(0.0, 1.0 / occluder_bounds.least_depth - 1.0 / receiver_bounds.greatest_depth);
+    const glm::dvec2 low = glm::max(receiver_bounds.low, occluder_bounds.low - reach);
+    const glm::dvec2 high = glm::min(receiver_bounds.high, occluder_bounds.high + reach);
     if (low.x < high.x && low.y < high.y) frustum.receivers = window_of(low, high);
     return frustum;
 }

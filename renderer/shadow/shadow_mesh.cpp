@@ -16,7 +16,7 @@ namespace {
 
 struct Vertex {
     glm::vec3 position{0.0F};
-    glm::vec3 normal{0.0F};    ///< 0 = none: the triangle's own
+    glm::vec3 normal{0.0F};    ///< 0: no normal; the triangle's is used
     glm::u8vec4 color{255};    ///< linear
     glm::vec2 texcoord{0.0F};  ///< after KHR_texture_transform
 };
@@ -49,8 +49,8 @@ gl::TextureHandle make_texture(int width, int height, const std::uint8_t* rgba, 
     return texture;
 }
 
-/// Carries normals where `m` carries points, whatever its scales, with its orientation; 0 where it flattens
-/// space.
+/// The matrix that transforms normals if `m` transforms points, whatever the scales of `m`. It keeps the
+/// orientation, and is 0 if `m` flattens space.
 glm::dmat3 cofactors(const glm::dmat3& m) {
     const glm::dmat3 c(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
     return glm::dot(m[0], c[0]) < 0.0 ? -c : c;
@@ -121,10 +121,10 @@ void ShadowMesh::add_textures(const scenes::Scene& scene) {
         used[draw.texture] = true;
     constexpr std::uint8_t white[4] = {255, 255, 255, 255};
     for (std::size_t i = 0; i <= scene.textures.size(); ++i) {
-        const bool own = i < scene.textures.size() && scene.textures[i].image >= 0;
+        const bool has_image = i < scene.textures.size() && scene.textures[i].image >= 0;
         if (!used[i]) {
             textures_.emplace_back();
-        } else if (own) {
+        } else if (has_image) {
             const scenes::Texture& texture = scene.textures[i];
             const scenes::Image& image = scene.images[std::size_t(texture.image)];
             textures_.push_back(

@@ -13,20 +13,21 @@
 
 namespace cairn::renderer {
 
-/// The triangles of a snapshot on the GPU, to be rasterized for shadow maps and pictures. Lines and points
-/// have no area and are left out.
+/// The triangles of a snapshot on the GPU, to be rasterized for shadow maps and pictures. Lines and points,
+/// which have no area, are left out.
 class ShadowMesh {
 public:
     /// Neither the scene nor the snapshot is needed afterwards.
-    /// @throws Error  Fault::memory when it does not fit.
+    /// @throws Error  Fault::memory if the mesh does not fit.
     ShadowMesh(const scenes::Scene& scene, const scenes::Snapshot& snapshot);
 
     /// Draws all triangles with the program in use. Sets its base_color and alpha_cutoff for each material,
     /// and binds the material's texture (shaders/shadow/material.glsl).
     void draw(const gl::Program& program) const;
 
-    [[nodiscard]] glm::dvec3 origin() const { return origin_; }  ///< world; positions count from here
-    /// For a matrix of the world, the one of this mesh's positions.
+    /// The point of the world that the mesh's positions count from.
+    [[nodiscard]] glm::dvec3 origin() const { return origin_; }
+    /// Turns a matrix for points of the world into one for positions of this mesh.
     [[nodiscard]] glm::mat4 from_mesh(const glm::dmat4& from_world) const;
     [[nodiscard]] std::size_t triangle_count() const { return triangle_count_; }
 
@@ -46,7 +47,7 @@ private:
     glm::dvec3 origin_{0.0};
     std::size_t triangle_count_ = 0;
     std::vector<Draw> draws_;
-    std::vector<gl::TextureHandle> textures_;  ///< those of the scene, then a white one
+    std::vector<gl::TextureHandle> textures_;  ///< textures of the scene, then a white one
     gl::Buffer vertices_;
     gl::Buffer indices_;
     gl::VertexArrayHandle vertex_array_;

@@ -14,7 +14,7 @@
 namespace cairn::renderer {
 namespace {
 
-/// What a picture is drawn to, and read from.
+/// The render targets of a picture.
 class Targets {
 public:
     Targets(int width, int height) : width_(width), height_(height) {

@@ -12,7 +12,7 @@
 
 namespace cairn::renderer {
 
-/// A pinhole view of the projection.
+/// The pinhole view of a projected picture.
 struct ProjectionView {
     int width = 512;
     int height = 512;
@@ -26,8 +26,8 @@ struct ProjectionView {
 /// Row after row, pixel (0, 0) at the top left.
 struct ProjectedPixels {
     std::vector<std::uint8_t> rgba;  ///< sRGB-encoded; alpha 0 where nothing is
-    std::vector<float> visible;      ///< share of the light that the map tells; -1: not on a receiver
-    std::vector<float> distance;     ///< from the eye; infinite = nothing there
+    std::vector<float> visible;      ///< share of the light according to the map; -1: not on a receiver
+    std::vector<float> distance;     ///< distance from the eye; infinite: nothing there
 };
 
 /// Draws occluders and receivers, and projects the soft shadow map onto the receivers (Atty et al. 2005,

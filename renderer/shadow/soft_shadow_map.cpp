@@ -81,7 +81,7 @@ glm::vec4 vec_of(const ShadowWindow& window) {
 void check_options(const SoftShadowOptions& options) {
     for (const int size : {options.occluder_size, options.receiver_size}) {
         if (size >= 1 && size <= max_shadow_map_size) continue;
-        throw Error(Fault::usage, "soft shadow map", fmt::format("a map of {} texels a side", size),
+        throw Error(Fault::usage, "soft shadow map", fmt::format("a map of {} texels per side", size),
                     fmt::format("choose 1 to {}", max_shadow_map_size));
     }
 }
@@ -101,7 +101,7 @@ void check_frustum(const ShadowFrustum& frustum) {
 }  // namespace
 
 struct SoftShadowMap::Impl {
-    /// One set of micro-patches and what they hide.
+    /// One set of micro-patches, and the light that they hide.
     struct Pass {
         gl::TextureHandle occluders;
         gl::TextureHandle hidden;
@@ -223,8 +223,8 @@ void SoftShadowMap::Impl::draw_map(const ShadowMesh& mesh, const ShadowWindow& w
     mesh.draw(draw_map_program);
 }
 
-/// No face is culled. Of closed surfaces the closest faces are those that look at the light, and the furthest
-/// those that look away, as Atty et al. have them; of open ones both sides hide light.
+/// No face is culled. The closest faces of a closed surface are those that look at the light, and the
+/// furthest those that look away, as in Atty et al. 2005. Both sides of an open surface hide light.
 void SoftShadowMap::Impl::draw_maps(const ShadowMesh& occluders, const ShadowMesh& receiver_mesh) const {
     clear(passes[0].occluders, 0.0F);
     if (pass_count() == 2) clear(passes[1].occluders, float(SHADOW_NONE));
@@ -293,8 +293,8 @@ void SoftShadowMap::Impl::draw_patches(const Pass& pass, std::size_t first, std:
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, GLsizei(count), GLuint(first));
 }
 
-/// In FP16 a large sum takes no small summand. So the patches of a batch are summed alone, and the batches'
-/// sums, which are larger, together (appendix A).
+/// A large sum in FP16 loses small summands. So the patches of each batch are summed alone, and then the sums
+/// of the batches, which are larger (appendix A).
 void SoftShadowMap::Impl::hide_light(const Pass& pass) {
     clear(pass.hidden, 0.0F);
     if (pass.patch_count == 0) return;

@@ -24,25 +24,29 @@ struct PictureSize {
     bool operator==(const PictureSize&) const = default;
 };
 
-/// What stands in for the surface's own colour, lit and shadowed like it.
+/// Which colour a pixel shows, lit and shadowed like the surface.
 enum class Show : std::uint8_t {
-    surface,  ///< nothing: the scene
-    levels,   ///< the size of the voxels that a pixel shows, as a tree level: shown_level_color()
-    bricks,   ///< the scene, and lines where it passes from one brick into the next, in the level's colour
+    /// The surface's own colour.
+    surface,
+    /// The size of the voxels that the pixel shows, as the colour of their level: shown_level_color().
+    levels,
+    /// The surface's own colour, with lines in the level's colour where one brick meets the next.
+    bricks,
 };
 
-/// Linear. Level 0 is the root's brick; each level has voxels TreeOptions::n times finer, and mips lie
-/// between: with n = 4, level 1.5 has voxels twice as fine as level 1.
+/// The linear colour that stands for a level. Level 0 is the root's brick. Each level has voxels
+/// TreeOptions::n times finer than the one before, and mips lie between two levels: with n = 4, level 1.5 has
+/// voxels twice as fine as level 1.
 [[nodiscard]] glm::vec3 shown_level_color(double level);
 
 /// How the size of the voxels follows the width of a pixel's cone (Crassin et al. 2008, section 4.3). Both
 /// kinds use the same bricks.
 struct LevelOfDetail {
     enum class Kind : std::uint8_t {
-        /// The voxels of the tree level whose size is nearest to the cone's, by ratio: sharpest and cheapest,
-        /// but a level pops in when the camera moves.
+        /// Rays see the voxels of the level whose size is nearest to the cone's width, by ratio: sharpest and
+        /// cheapest, but a level pops in when the camera moves.
         nearest,
-        /// Between one level and the next the brick's mips lead over, so that no level pops in. Needs
+        /// Rays blend from one level to the next through the mips of a brick, so that no level pops in. Needs
         /// TreeOptions::mips.
         blended,
     };
@@ -57,28 +61,30 @@ constexpr double MAX_SHADOW_PIXEL_ERROR = 64.0;
 
 /// Which shadows a view has, and how finely they are sampled.
 ///
-/// Limits of shadow rays, in voxels as a shadow ray meets them: shadows end up to a voxel and a half beside
-/// the true edge, and no light passes a sheet, however thin. A light nearer than a voxel and a half to a
-/// surface may be hidden by that surface, on either side. Where something stands on a receiver that is
-/// voxelized too, the shadow that its lowest 4 voxels (2.5 on a mesh) cast by themselves may be missing:
-/// under a light that rises r per unit of way, 4 / r voxels from the foot of a thin sheet. A closed box leaks
-/// 3 voxels (2 on a mesh) at most while the light stands 30 degrees high. A mesh that is not voxelized is
-/// shadowed from contact on.
+/// Limits of shadow rays, in voxels as a shadow ray meets them:
+/// - A shadow ends up to a voxel and a half beside its true edge.
+/// - No light passes a sheet, however thin.
+/// - A light nearer than a voxel and a half to a surface may be hidden by that surface, on either side.
+/// - If an object stands on a receiver that is voxelized too, the shadow that the object's lowest 4 voxels
+///   (2.5 on a mesh) cast by themselves may be missing: under a light that rises r per unit of way, 4 / r
+///   voxels from the foot of a thin sheet.
+/// - A closed box leaks light over 3 voxels (2 on a mesh) at most if the light stands 30 degrees high.
+/// - A mesh that is not voxelized is shadowed from contact on.
 struct ShadowQuality {
     enum class Kind : std::uint8_t {
         none,
-        hard,  ///< one ray per pixel, to the light's middle
-        /// `samples` rays per pixel to samples of the whole light, which are stratified and the same in every
-        /// frame; 1 ray goes to the light's middle. In a volume the rays leave from where half of what is
-        /// seen lies. The shares of several lights are the sum of as many views.
+        hard,  ///< one ray per pixel, to the middle of the light
+        /// `samples` rays per pixel go to samples of the whole light, which are stratified and the same in
+        /// every frame; a single ray goes to the middle of the light. In a volume the rays start at the depth
+        /// before which half of what is seen lies. For several lights, add the shares of one view per light.
         rays,
-        /// The rays are cones, each as wide as its share of the light: they read coarser voxels the further
-        /// they go, and one cone takes what several rays would find on average. 1 cone sees all of the light.
-        /// Not through volumes.
+        /// `samples` cones per pixel, each as wide as its share of the light. A cone reads coarser voxels the
+        /// further it goes, and finds what several rays would find on average. A single cone covers all of
+        /// the light. Not supported for volumes.
         cones,
     };
     Kind kind = Kind::hard;
-    /// Rays or cones per pixel, in [1, MAX_SHADOW_RAYS]; hard shadows do not read it.
+    /// Rays or cones per pixel, in [1, MAX_SHADOW_RAYS]. Hard shadows do not read it.
     int samples = 64;
     /// Size of the voxels that a shadow ray meets, in units of the voxels that its pixel shows: above 1 the
     /// ray reads, and asks for, coarser data of its own. In [MIN_SHADOW_PIXEL_ERROR, MAX_SHADOW_PIXEL_ERROR].
@@ -86,6 +92,7 @@ struct ShadowQuality {
     bool operator==(const ShadowQuality&) const = default;
 };
 
+/// What a picture shows. The picture depends on the view alone.
 struct View {
     PictureSize size;
     optics::Camera camera;
@@ -93,10 +100,10 @@ struct View {
     ShadowQuality shadow;
     LevelOfDetail detail;
     Show show = Show::surface;
-    /// Linear.
+    /// Linear colour of pixels that show nothing else.
     glm::vec3 background{0.80F, 0.84F, 0.90F};
-    /// The camera and the light are given from this tile's low corner, in units of the tile's side, instead
-    /// of in the world: so a view is exact however deep it is.
+    /// If set, the camera and the light are not in world coordinates, but count from the low corner of this
+    /// tile in units of the tile's side. So a view is exact however deep it is.
     std::optional<Tile> anchor = std::nullopt;
     bool operator==(const View&) const = default;
 };
@@ -108,20 +115,22 @@ struct Rows {
     bool operator==(const Rows&) const = default;
 };
 
-/// Checks a view that no tree is marched for: NaN in a shader is a picture that nobody can explain.
-/// @throws Error (Fault::usage) that names the field and its range; an anchor is an error too.
+/// Checks all fields of a view but its anchor, since a shader that meets a NaN draws a picture that nobody
+/// can explain.
+/// @throws Error (Fault::usage) that names the field and its range.
 void check_view(const View& view);
-/// Checks a view of a tree, and that the tree has the tile of its anchor.
+/// Checks all fields of a view, and that the tree has the tile of its anchor.
 /// @throws Error (Fault::usage) that names the field and its range.
 void check_view(const View& view, const TreeShape& shape);
 
-/// Does the view ask for shadows of more than the light's middle?
+/// Does the view ask for shadows of more than the middle of the light?
 [[nodiscard]] bool is_soft(const View& view);
-/// Shadow rays, or cones, that a pixel of the view starts; 1 where is_soft() is false.
+/// Shadow rays or cones per pixel; 1 if is_soft() is false.
 [[nodiscard]] int shadow_samples(const View& view);
 
-/// A pixel that shows nothing else, as write_pixel() in shade.glsl would encode it.
+/// A pixel of this colour alone, encoded as write_pixel() in shade.glsl encodes it.
 [[nodiscard]] std::uint32_t background_pixel(const glm::vec3& linear);
+/// Rows of a picture that shows nothing but the background.
 [[nodiscard]] optics::Image background_image(const View& view, Rows rows);
 
 }  // namespace cairn::renderer

@@ -1,11 +1,10 @@
-#include "scenes/builtin/builtin.h"
-
 #include <array>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "scenes/builtin/generators.h"
+#include "scenes/load.h"
 
 namespace cairn::scenes {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "scenes/scene.h"
 
-/// The generators behind builtin.h, one per file, and the few steps that they share.
+/// The generators behind make_builtin(), one per file, and the few steps that they share.
 namespace cairn::scenes {
 
 enum class Leaves { triangles, masked_cards };
@@ -24,7 +24,7 @@ class RandomStream {
 public:
     explicit RandomStream(std::uint32_t seed) : bits_(seed) {}
 
-    /// In [0, 1), a multiple of 2^-24.
+    /// A number in [0, 1), a multiple of 2^-24.
     [[nodiscard]] double unit() { return static_cast<double>(bits_() >> 8) * 0x1p-24; }
     [[nodiscard]] double between(double low, double high) { return low + (high - low) * unit(); }
 
@@ -41,6 +41,7 @@ inline int add_material(Scene& scene, std::string name, const glm::vec3& linear_
     return static_cast<int>(scene.materials.size()) - 1;
 }
 
+/// Adds a mesh of one primitive; returns its index.
 inline int add_mesh(Scene& scene, std::string name, Primitive primitive) {
     Mesh mesh;
     mesh.name = std::move(name);
@@ -49,7 +50,7 @@ inline int add_mesh(Scene& scene, std::string name, Primitive primitive) {
     return static_cast<int>(scene.meshes.size()) - 1;
 }
 
-/// Adds a node that draws a mesh (-1: none) moved to a place; it has no parent yet.
+/// Adds a node without a parent that draws a mesh (-1: no mesh) at a place; returns its index.
 inline int add_node(Scene& scene, std::string name, int mesh, const glm::dvec3& translation = {}) {
     Node node;
     node.name = std::move(name);

@@ -18,8 +18,8 @@ Scene make_needles() {
         const glm::dvec3 point = point_in_cube(1.0);
         needles.positions.emplace_back(point);
         needles.positions.emplace_back(point_in_cube(1.0));
-        // From a fortieth of a voxel of a 256 grid to the width of one: where a separating-axis test in
-        // floats fails.
+        // Needles are as wide as a fortieth of a voxel of a grid of 256, or one voxel: widths at which a
+        // separating-axis test in floats fails.
         needles.positions.emplace_back(point + point_in_cube(needle % 2 == 0 ? 0.0002 : 0.008));
         needles.indices.insert(needles.indices.end(), {first, first + 1, first + 2});
     }

@@ -13,8 +13,10 @@ namespace cairn::scenes {
 namespace {
 
 constexpr double radius = 0.32;
-constexpr double spacing = 0.4;  ///< from a group's centre to its spheres, along each axis
-/// From the scene's centre to the groups': three times the spacing within them, so that no two groups touch.
+/// Distance from a group's centre to its spheres, along each axis.
+constexpr double spacing = 0.4;
+/// Distance from the scene's centre to the groups' centres: three times the spacing within a group, so that
+/// no two groups touch.
 constexpr double group_spacing = 1.2;
 
 /// A sphere of 2 * segments * (bands - 1) triangles, closed: the poles and the seam are shared vertices.

@@ -15,17 +15,17 @@ namespace {
 /// Radians; the golden section of a full turn, so that neighbours never stand in line.
 constexpr double golden_angle = 2.399963229728653;
 
-/// One order of branches: how finely its tubes are cut, and how it stands on the order before.
+/// One order of branches: the resolution of its tubes, and its relation to the order before.
 struct Order {
     std::uint32_t children;  ///< on each branch of the order before
     std::uint32_t sections;
     std::uint32_t sides;
-    double length;     ///< of the branch it stands on, at the lowest child
-    double thickness;  ///< of the branch it stands on, at the same place
-    double lowest;     ///< where the first child stands, 0 = foot, 1 = tip
+    double length;     ///< length of the lowest child, in lengths of the branch it stands on
+    double thickness;  ///< thickness of the lowest child, in thicknesses of that branch there
+    double lowest;     ///< place of the lowest child on that branch, 0 = foot, 1 = tip
     double spread;     ///< radians from the direction of the branch it stands on
-    double wander;     ///< how much the direction changes over the branch
-    double lift;       ///< how much it turns up over the branch
+    double wander;     ///< change of direction over the branch
+    double lift;       ///< upward turn over the branch
 };
 
 constexpr std::array<Order, 4> orders = {
@@ -43,7 +43,7 @@ struct Branch {
     std::size_t order = 0;
     double length = 0.0;
     std::vector<glm::dvec3> points;
-    std::vector<glm::dvec3> directions;  ///< of length 1, one per point
+    std::vector<glm::dvec3> directions;  ///< unit directions, one per point
     std::vector<double> radii;
 };
 

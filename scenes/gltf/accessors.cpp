@@ -75,7 +75,7 @@ void fill_zeros(const Elements& elements, Selection selection, int width, Out fi
             *out++ = c < elements.width ? Out{} : filler;
 }
 
-/// Where an array of elements ends in its view; fails when the view is shorter. Safe against overflow.
+/// The end of an array of elements in its view. Safe against overflow. @throws Error  if the view is shorter.
 void check_range(const std::string& where, std::uint64_t offset, std::uint64_t stride, std::uint64_t count,
                  std::uint64_t element_bytes, std::uint64_t view_bytes) {
     if (count == 0) return;

@@ -12,16 +12,17 @@
 
 namespace cairn::scenes::gltf {
 
-/// The elements of an accessor where they lie, all ranges checked: element i begins at data + i * stride.
+/// The elements of an accessor, in the memory where they lie: element i begins at data + i * stride. All
+/// ranges are checked.
 struct Elements {
     std::string where;                   ///< names the accessor in messages
     const std::uint8_t* data = nullptr;  ///< null: every component is 0
     std::size_t stride = 0;
     std::size_t count = 0;
-    int width = 0;  ///< components of an element: 1, 2, 3, 4, 9 or 16
+    int width = 0;  ///< components per element: 1, 2, 3, 4, 9 or 16
     int component = TINYGLTF_COMPONENT_TYPE_FLOAT;
     bool normalized = false;
-    /// Owns what `data` points into if the elements were made here and do not lie in a buffer.
+    /// Owns the memory that `data` points into, if the elements do not lie in a buffer.
     std::shared_ptr<const std::vector<std::uint8_t>> storage;
 };
 
@@ -33,12 +34,12 @@ public:
     Accessors(const Source& source, Buffers& buffers, Budget& budget)
         : source_(source), buffers_(buffers), budget_(budget) {}
 
-    /// Dense, interleaved or sparse alike. `user` is who asks, for messages: `ear.glb: mesh 2 "ear",
-    /// primitive 0`.
-    /// @throws Error  the accessor leaves its buffer view, or its types are none of glTF's.
+    /// The elements of an accessor: dense, interleaved or sparse.
+    /// @param user    names the user of the accessor in messages: `ear.glb: mesh 2 "ear", primitive 0`.
+    /// @throws Error  if the accessor leaves its buffer view, or its types are not glTF's.
     [[nodiscard]] Elements elements(const std::string& user, int accessor);
 
-    /// The same without data: an accessor whose data stands elsewhere (in a Draco stream).
+    /// The elements of an accessor without their data, if that stands elsewhere (in a Draco stream).
     [[nodiscard]] Elements shape(const std::string& user, int accessor) const;
 
 private:
@@ -51,12 +52,12 @@ private:
 
 [[nodiscard]] std::size_t component_bytes(int component);
 
-/// Reads `width` floats an element, normalized integers as glTF 2.0, 3.11 says; components that the accessor
-/// lacks become `filler`.
+/// Reads `width` floats per element. Normalized integers are converted as in glTF 2.0, 3.11; components that
+/// the accessor lacks become `filler`.
 void read_floats(const Elements& elements, Selection selection, int width, float filler, float* out);
 
-/// Reads whole numbers as they stand.
-/// @throws Error  the accessor's components are not unsigned integers.
+/// Reads `width` whole numbers per element.
+/// @throws Error  if the accessor's components are not unsigned integers.
 void read_integers(const Elements& elements, Selection selection, int width, std::uint32_t* out);
 
 }  // namespace cairn::scenes::gltf

@@ -11,14 +11,15 @@
 
 namespace cairn::scenes::gltf {
 
-/// The bytes of buffers and buffer views, read and decompressed when first asked for and kept: a buffer that
-/// nothing uses is never opened (EXT_meshopt_compression has "fallback" buffers that hold nothing at all).
+/// The bytes of buffers and buffer views, which are read and decompressed at their first use and kept: a
+/// buffer that nothing uses is never opened (EXT_meshopt_compression has "fallback" buffers that hold nothing
+/// at all).
 class Buffers {
 public:
     Buffers(const Source& source, Budget& budget) : source_(source), budget_(budget) {}
 
     /// The bytes of a buffer view of the file (not `no_view`), decompressed if need be.
-    /// @throws Error  its buffer is missing or too short, or the compressed data is broken.
+    /// @throws Error  if its buffer is missing or too short, or the compressed data is broken.
     [[nodiscard]] std::span<const std::uint8_t> view(int index);
 
 private:
@@ -29,7 +30,7 @@ private:
 
     const Source& source_;
     Budget& budget_;
-    std::map<int, std::vector<std::uint8_t>> loaded_;  ///< buffers that are not the .glb's own
+    std::map<int, std::vector<std::uint8_t>> loaded_;  ///< buffers outside the .glb
     std::map<int, std::vector<std::uint8_t>> decompressed_views_;
 };
 

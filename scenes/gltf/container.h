@@ -14,12 +14,12 @@ struct Container {
     bool is_glb = false;
 };
 
-/// Splits the bytes of a file; decides by its first four bytes, not by its name.
-/// @throws Error  header or chunk lengths contradict the file's.
+/// Splits the bytes of a file. Its first four bytes, not its name, decide whether it is a .glb.
+/// @throws Error  if header or chunk lengths contradict the file's length.
 [[nodiscard]] Container split_container(const std::string& name, std::span<const std::uint8_t> file);
 
 /// Refuses JSON that would take too much stack or memory to parse, before anything parses it.
-/// @throws Error  it nests too deep, or holds too many values.
+/// @throws Error  if the JSON nests too deep, or holds too many values.
 void check_json_size(const std::string& name, std::string_view json);
 
 }  // namespace cairn::scenes::gltf

@@ -16,8 +16,8 @@ struct DracoMesh {
     std::map<std::string, Elements> attributes;  ///< "POSITION", ...
 };
 
-/// @param wanted  shape of each attribute (from its accessor) and its id in the stream.
-/// @throws Error  the stream is damaged, or its counts differ from the accessors'.
+/// @param wanted  the shape of each attribute (from its accessor) and the attribute's id in the stream.
+/// @throws Error  if the stream is damaged, or its counts differ from the accessors'.
 [[nodiscard]] DracoMesh decode_draco(const std::string& where, std::span<const std::uint8_t> stream,
                                      const std::map<std::string, std::pair<Elements, int>>& wanted,
                                      Budget& budget);

@@ -11,10 +11,10 @@ namespace cairn::scenes::gltf {
 
 /// Decodes a PNG or JPEG to 8-bit RGBA.
 ///
-/// The size that the file claims is checked before anything is allocated, and a stream that unpacks to more
+/// The size that the file claims is checked before anything is allocated. A stream that unpacks to more bytes
 /// than that size needs is refused.
-/// @param budget  of all pictures; grows by this file.
-/// @throws Error  the image is damaged, of another format, or too large.
+/// @param budget  the budget of all pictures, which grows by the bytes of this file.
+/// @throws Error  if the image is damaged, of another format, or too large.
 [[nodiscard]] Image decode_image(const std::string& where, std::span<const std::uint8_t> file,
                                  Budget& budget);
 

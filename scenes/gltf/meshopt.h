@@ -16,8 +16,8 @@ struct MeshoptStream {
     std::string filter;        ///< NONE or empty, OCTAHEDRAL, QUATERNION, EXPONENTIAL
 };
 
-/// @return        count * stride bytes; the caller has found that much affordable.
-/// @throws Error  the stream breaks the extension's rules, or is damaged.
+/// @return        count * stride bytes, for which the caller has charged the Budget.
+/// @throws Error  if the stream breaks the extension's rules, or is damaged.
 [[nodiscard]] std::vector<std::uint8_t> decode_meshopt(const std::string& where, const MeshoptStream& stream);
 
 }  // namespace cairn::scenes::gltf

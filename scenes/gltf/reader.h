@@ -11,7 +11,7 @@
 
 namespace cairn::scenes::gltf {
 
-/// What the steps of one conversion share. They run in the order in which they are declared below.
+/// The data that the steps of one conversion share. The steps are the functions below, and run in this order.
 struct Reader {
     explicit Reader(Source read) : source(std::move(read)) {
         budget.grant(source.json_bytes + source.glb_chunk.size());
@@ -34,18 +34,19 @@ struct Reader {
     /// Per mesh, one more than the largest joint that it names.
     std::vector<std::uint32_t> joints_needed;
 
-    /// Adds a warning, once.
+    /// Adds a warning, unless it is there already.
     void warn(const std::string& text);
 };
 
-/// @throws Error  extensionsRequired names one that is not supported. Optional ones become warnings.
+/// @throws Error  if extensionsRequired names an extension that is not supported. Optional ones become
+/// warnings.
 void check_extensions(Reader& reader);
-/// Fills Scene::materials, and textures and images as far as base colours use them.
+/// Fills Scene::materials, and those textures and images that base colours use.
 void read_materials(Reader& reader);
 void read_meshes(Reader& reader);
 /// Fills Scene::nodes, scenes, cameras, lights and skins.
 void read_nodes(Reader& reader);
-/// @throws Error  the nodes are not a forest, or a scene lists a node that is no root.
+/// @throws Error  if the nodes are not a forest, or a scene lists a node that is no root.
 void check_forest(Reader& reader);
 void read_skins(Reader& reader);
 void read_animations(Reader& reader);

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Where in the document we are; turned into text only when something is wrong.
+/// The place in the document that is checked. It is turned into text only for an error.
 struct Frame {
     const Frame* parent = nullptr;
     std::string_view label;
@@ -66,7 +66,7 @@ public:
     }
 
 private:
-    /// What the tables do not name goes, so that tinygltf sees only what has been checked.
+    /// Removes properties that the tables do not name, so that tinygltf sees only checked ones.
     static void prune(json& value, const Shape& shape) {
         for (auto entry = value.begin(); entry != value.end();) {
             const auto is_entry = [&](const Property& property) { return entry.key() == property.name; };

@@ -12,12 +12,12 @@ enum class Kind {
     number,
     numbers,
     whole,      ///< 0, 1, 2, ... up to 2^53
-    whole_int,  ///< 0, 1, 2, ... up to 2^31 - 1: what tinygltf keeps in an int
-    index,      ///< into the array `target`
+    whole_int,  ///< 0, 1, 2, ... up to 2^31 - 1: an int of tinygltf
+    index,      ///< index into the array `target`
     indices,
-    index_map,   ///< an object of indices: the attributes of a primitive
-    index_maps,  ///< an array of such objects: the morph targets of a primitive
-    any_object,  ///< kept as it is
+    index_map,   ///< object of indices: the attributes of a primitive
+    index_maps,  ///< array of objects of indices: morph targets
+    any_object,  ///< an object that is kept as it is
     object,
     objects,
 };
@@ -29,18 +29,19 @@ struct Property {
     const char* name;
     Kind kind;
     bool required = false;
-    const char* target = nullptr;  ///< index kinds: JSON pointer to the array that they point into
-    /// Numbers: how many, 0 = any; objects: at most how many, 0 = most_elements.
+    /// For kinds of indices: JSON pointer to the array that they point into.
+    const char* target = nullptr;
+    /// For numbers: their count, 0 = any; for objects: their greatest count, 0 = most_elements.
     std::size_t length = 0;
-    const Shape* inside = nullptr;  ///< object, objects
-    const char* label = "";         ///< objects: what messages call one of them
+    const Shape* inside = nullptr;  ///< for an object or objects: their properties
+    const char* label = "";         ///< for objects: the name of one of them in messages
 };
 
 struct Shape {
     std::span<const Property> properties;
 };
 
-/// The properties that the loader reads, of the whole document.
+/// The properties of a document that the loader reads.
 [[nodiscard]] const Shape& schema_of_document();
 
 }  // namespace cairn::scenes::gltf

@@ -11,17 +11,17 @@
 
 namespace cairn::scenes::gltf {
 
-/// "buffers" of the file. Their bytes are read when something needs them (buffers.h).
+/// One of the file's "buffers". Its bytes are read when something needs them (buffers.h).
 struct BufferSource {
     std::optional<std::string> uri;
     std::uint64_t byte_length = 0;
 };
 
-/// "images" of the file. Only those that a base colour uses are read (images.h).
+/// One of the file's "images". It is read only if a base colour uses it (images.h).
 struct ImageSource {
     std::string name;
     std::optional<std::string> uri;
-    int buffer_view = -1;  ///< checked
+    int buffer_view = -1;  ///< in range, checked; -1: the image has a URI
 };
 
 /// A glTF file, parsed and checked against schema.h, not yet converted.
@@ -34,19 +34,19 @@ struct Source {
     std::uint64_t json_bytes = 0;
     std::vector<BufferSource> buffers;
     std::vector<ImageSource> images;
-    /// Everything but buffers and images. An index accessor without a buffer view has `no_view` (tinygltf
-    /// refuses -1).
+    /// The parsed file, but for buffers and images. An index accessor without a buffer view has `no_view`
+    /// (tinygltf refuses -1).
     tinygltf::Model model;
     int no_view = -1;  ///< one past the file's last buffer view
 
-    /// For messages: "ear.glb: accessor 7".
+    /// The place of an element, for messages: "ear.glb: accessor 7".
     [[nodiscard]] std::string where(const std::string& element_text) const {
         return name + ": " + element_text;
     }
 };
 
-/// Reads and checks a file. tinygltf gets to see only JSON that has passed the checks, and opens nothing.
-/// @throws Error
+/// Reads and checks a file. tinygltf parses only JSON that has passed the checks, and opens no file.
+/// @throws Error  (Fault::input) if the file cannot be read or does not pass.
 [[nodiscard]] Source read_source(const std::filesystem::path& path, bool trust_paths);
 
 }  // namespace cairn::scenes::gltf

@@ -9,15 +9,16 @@
 
 namespace cairn::scenes::gltf {
 
-/// What a primitive's mode spans: glTF's 0 to 6 (points, lines, loop, line strip, triangles, strip, fan).
-/// @return none for another number.
+/// The elements of a primitive's mode, glTF's 0 to 6 (points, lines, loop, line strip, triangles, strip,
+/// fan).
+/// @return nothing if the mode is another number.
 [[nodiscard]] std::optional<Topology> topology_of(int mode);
 
-/// Turns strips, fans and loops into lists, keeping the winding (glTF 2.0, 3.7.2.1). Vertices too few or too
-/// many for a last whole element are dropped, as the specification asks.
+/// Turns strips, fans and loops into lists, keeping the winding (glTF 2.0, 3.7.2.1). Vertices at the end that
+/// make no whole element are dropped, as the specification asks.
 [[nodiscard]] std::vector<std::uint32_t> unroll(std::vector<std::uint32_t> indices, int mode);
 
-/// How many entries unroll() returns.
+/// Number of entries that unroll() returns.
 [[nodiscard]] std::uint64_t unrolled_count(std::uint64_t index_count, int mode);
 
 }  // namespace cairn::scenes::gltf

@@ -11,19 +11,19 @@ namespace cairn::scenes::gltf {
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 
 /// The bytes of a "data:" URI, base64 or percent-encoded (RFC 2397).
-/// @throws Error  the encoding is broken.
+/// @throws Error  if the encoding is broken.
 [[nodiscard]] std::vector<std::uint8_t> decode_data_uri(const std::string& where, std::string_view uri);
 
 /// The file that a relative URI names.
 ///
-/// @param folder       that of the .gltf file.
-/// @param trust_paths  allow absolute paths and such as leave the folder; never other schemes.
-/// @throws Error       the URI has a scheme, is absolute or leaves the folder.
+/// @param folder       the folder of the .gltf file.
+/// @param trust_paths  allows absolute paths and paths that leave the folder, but no other schemes.
+/// @throws Error       if the URI has a scheme, is absolute or leaves the folder.
 [[nodiscard]] std::filesystem::path resolve_uri(const std::string& where, std::string_view uri,
                                                 const std::filesystem::path& folder, bool trust_paths);
 
-/// The whole of a regular file.
-/// @throws Error  it is missing, is no regular file, or is larger than `most_bytes`.
+/// The bytes of a regular file.
+/// @throws Error  if it is missing, is no regular file, or is larger than `most_bytes`.
 [[nodiscard]] std::vector<std::uint8_t> read_file(const std::string& where, const std::filesystem::path& path,
                                                   std::uint64_t most_bytes);
 

@@ -21,7 +21,7 @@ using Keys = std::map<std::string, std::string, std::less<>>;
 
 struct Header {
     Keys keys;
-    std::size_t bytes = 0;  ///< from the file's start
+    std::size_t bytes = 0;  ///< length of the header, from the file's start
 };
 
 std::string_view trimmed(std::string_view text) {

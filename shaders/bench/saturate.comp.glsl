@@ -1,6 +1,6 @@
-// One thread is one primary ray through the bricks that are there: how deep it gets before it is opaque
-// (Crassin 2007, section 3.6.1). Writes 1 / depth along the view, in place of a colour; 0 where the ray gets
-// through.
+// One thread is one primary ray through the bricks that the pool holds. It finds the depth at which the ray
+// becomes opaque (Crassin 2007, section 3.6.1), and writes 1 / depth along the view in place of a colour, or
+// 0 if the ray gets through.
 #include "interop/march.h"
 #define RAYS_WIDEN 1
 #define VISIT_TURNS 0

@@ -1,2 +1,2 @@
-// A fragment of a box that is only tested against the depths that are there.
+// A fragment of a box, which is only tested against the depths of the target.
 void main() {}

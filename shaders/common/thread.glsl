@@ -1,5 +1,5 @@
-// The number of a thread among those of gl::dispatch_threads(), which folds them over x and y where one axis
-// is too short.
+// The number of a thread among those of gl::dispatch_threads(), which folds them over x and y if one axis is
+// too short.
 // Needs the define GROUP_SIZE: threads per workgroup.
 layout(local_size_x = GROUP_SIZE) in;
 

@@ -1,4 +1,5 @@
-// Meshes that are rasterized in the picture of voxels, and proxies that bound what is shown of them.
+// Meshes that are rasterized into the picture of voxels, and proxies: meshes that bound the voxels that are
+// shown.
 #ifndef CAIRN_INTEROP_MESH_H
 #define CAIRN_INTEROP_MESH_H
 
@@ -9,49 +10,52 @@
 // Beside the surface's bindings, and UBO_VIEW.
 #define UBO_MESH_VIEW 1
 #define SSBO_MESH_TRIANGLES 5    // MeshTriangle: a batch of triangles, as this view sees them
-// R32F per pixel: distance of the nearest mesh, MESH_MISS where there is none.
+// R32F per pixel: distance of the nearest mesh, or MESH_MISS.
 #define TEXTURE_MESH_NEAREST 8
-#define TEXTURE_MESH_SURFACE 9   // RGBA32UI per pixel: what is there (shaders/mesh/mesh_surface.glsl)
-// RG32F per pixel: distance of the proxy's first face, minus that of its last.
+#define TEXTURE_MESH_SURFACE 9   // RGBA32UI per pixel: colour and normals (shaders/mesh/mesh_surface.glsl)
+// RG32F per pixel. r: distance of the proxy's first face; g: minus the distance of its last face.
 #define TEXTURE_PROXY_SPAN 10
-#define TEXTURE_PROXY_FACES 11   // R32F per pixel: fronts less backs
+#define TEXTURE_PROXY_FACES 11   // R32F per pixel: number of front faces less that of back faces
 
 #define MESH_BATCH_TRIANGLES 262144  // triangles per draw call
 #define MESH_STRIP_PIXELS 4194304    // pixels of a picture that are drawn at once, in whole rows
-#define MESH_MISS 1e30               // the distance of what is not there
-#define MESH_NEAREST_PART 9.5367431640625e-7  // how near the eye a mesh may come, in sides of the mesh
-// A voxel that touches a triangle has its centre at most half a diagonal from its plane; a little more, where
-// the surface bends.
-#define MESH_OWN_HEIGHT 1.125
+#define MESH_MISS 1e30               // distance of a pixel without a mesh
+#define MESH_NEAREST_PART 9.5367431640625e-7  // 2^-20: least distance that is drawn, in sides of the mesh
+// Voxels whose centres lie lower over a mesh are part of its surface and cast no shadow on it, in sides of a
+// voxel. The centre of a voxel that touches a triangle lies at most half a diagonal (0.87) from the
+// triangle's plane; a little further, where the surface bends.
+#define MESH_SELF_SHADOW_HEIGHT 1.125
 
 #ifdef __cplusplus
 namespace cairn::interop {
 #endif
 
-// How a mesh stands to the rays of a MarchView. A point of the lattice, p, lies at p * lattice_unit + origin
-// from MarchView.eye, in its units; from there, the rows give what its picture and its depth are in
-// homogeneous coordinates: x to the right, y downwards, both -1 to 1 over the picture, each times w = along +
-// skipped.
+// The place of a mesh relative to the rays of a MarchView. A point p of the lattice lies at p * lattice_unit
+// + origin from MarchView.eye, in units of the MarchView. The scalar products of that vector with `across`,
+// `down` and `along` are the homogeneous coordinates of its picture: x to the right and y downwards, both -1
+// to 1 over the picture and multiplied by w = along + skipped.
 struct MeshView {
     dvec3 origin;
     double lattice_unit;
-    dvec3 across;          // to x
+    dvec3 across;          // row of the matrix that gives x * w
     double padding;
-    dvec3 down;            // to y
-    double nearest;        // the least w that is drawn
-    dvec3 along;           // to the distance along MarchView.forward
+    dvec3 down;            // row of the matrix that gives y * w
+    double nearest;        // least w that is drawn
+    dvec3 along;           // row that gives the distance along MarchView.forward
     double skipped;        // MarchView.skipped
 };
 
-// A triangle, from MarchView.eye and in the units of MarchView.
+// A triangle, relative to MarchView.eye and in units of the MarchView.
 struct MeshTriangle {
-    vec3 normal;           // unit, of its front; 0 without area
-    float height;          // the normal's product with the triangle's points
+    vec3 normal;           // unit normal of the front; 0 if the triangle has no area
+    float height;          // scalar product of the normal and a point of the triangle
     vec3 corner;           // first vertex
-    float nearest;         // the least distance of a vertex along MarchView.forward
-    vec3 second;           // its product with (point - corner) is the second vertex's weight
-    float furthest;        // the greatest distance of a vertex along MarchView.forward
-    vec3 third;            // its product with (point - corner) is the third vertex's weight
+    float nearest;         // least distance of a vertex along MarchView.forward
+    // Scalar product with (point - corner): weight of the second vertex.
+    vec3 second;
+    float furthest;        // greatest distance of a vertex along MarchView.forward
+    // Scalar product with (point - corner): weight of the third vertex.
+    vec3 third;
     float padding;
 };
 

@@ -8,16 +8,16 @@
 
 #define TEXTURE_NODES 0         // NodeEntry
 #define TEXTURE_BRICK_MASKS 1
-#define TEXTURE_BRICK_COLOR 2   // or coverage alone, or a volume's density
+#define TEXTURE_BRICK_COLOR 2   // colour and coverage, or coverage alone, or a volume's density
 #define TEXTURE_BRICK_NORMAL 3
-#define TEXTURE_NODE_MEANS 5    // RGBA8 in a uint, per node entry: what constant tiles hold
+#define TEXTURE_NODE_MEANS 5    // RGBA8 in a uint per node entry: the value of constant tiles
 
-// NodeEntry.brick: the slot + 1, and what is known of the tile.
+// NodeEntry.brick: the slot + 1, and flags of the tile.
 #define NODE_SLOT 0x00FFFFFFu
-#define NODE_PRODUCED 0x10000000u  // it has been produced, and the flags below tell what it turned out to be
-#define NODE_FINAL 0x20000000u     // nothing finer adds to it: it has no children
-#define NODE_EMPTY 0x40000000u     // constant, and the value is 0
-#define NODE_CONSTANT 0x80000000u  // one value is all that it holds at its own level: it has no brick
+#define NODE_PRODUCED 0x10000000u  // the tile has been produced, and the flags below hold
+#define NODE_FINAL 0x20000000u     // finer levels add nothing to the tile: it has no children
+#define NODE_EMPTY 0x40000000u     // the tile is constant, and its value is 0
+#define NODE_CONSTANT 0x80000000u  // the tile holds one value at its level, and needs no brick
 
 // Voxels across the root cube stay below this, because a ray state packs three coordinates in 63 bits.
 #define MAX_RESOLUTION_BITS 21
@@ -26,13 +26,14 @@
 namespace cairn::interop {
 #endif
 
-// One tile in the node pool (Crassin et al. 2008, section 4.2). A tile that is empty has no entry: its bit in
-// the parent's mask is 0. With N = 8 a bit stands for a group of 2^3 children, bit x + 4 (y + 4 z), and a
-// child that is empty in a group that is not has an entry of its own that says so.
+// One tile in the node pool (Crassin et al. 2008, section 4.2). An empty tile has no entry: its bit in the
+// parent's mask is 0. With N = 8 a bit stands for a group of 2^3 children, bit x + 4 (y + 4 z); an empty
+// child in a group that is not empty has an entry with NODE_EMPTY.
 struct NodeEntry {
     uvec2 child_mask;  // bit x + N (y + N z): child (x, y, z) is not empty
     uint children;     // number of the first child's entry; 0 = leaf
-    uint brick;        // NODE_SLOT: slot + 1, 0 = no brick; the other bits are NODE_* flags
+    // NODE_SLOT: slot + 1, 0 = no brick; the other bits are NODE_* flags.
+    uint brick;
 };
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
-// The producers: tiles whose bricks are being made, and what is gathered for them (beside the surface's
-// bindings 0 to 4).
+// The producers: the tiles whose bricks are being produced, and the data that is gathered for them (beside
+// the surface's bindings 0 to 4).
 #ifndef CAIRN_INTEROP_PRODUCE_H
 #define CAIRN_INTEROP_PRODUCE_H
 
@@ -10,9 +10,9 @@
 #define SSBO_BRICK_PAIRS 5    // BrickPair: which triangle touches which tile of the batch
 #define SSBO_BRICK_TILES 6    // BrickTile, or FractalTile: the tiles of the batch
 #define SSBO_BRICK_SCRATCH 7  // masks, then sums, of every voxel of the batch (shaders/produce/scratch.glsl)
-// The passes that resolve, which read no surface.
+// Bindings of the passes that resolve, which read no surface.
 #define SSBO_BRICK_MASKS 0    // masks and summaries of the brick pool
-#define SSBO_BRICK_FOUND 1    // a word per tile of the batch: not 0 where any of its voxels is occupied
+#define SSBO_BRICK_FOUND 1    // a word per tile of the batch: not 0 if a voxel of the tile is occupied
 #define IMAGE_BRICK_COLOR 0
 #define IMAGE_BRICK_NORMAL 1
 
@@ -22,15 +22,17 @@ namespace cairn::interop {
 
 // A tile whose brick is being produced.
 struct BrickTile {
-    ivec3 low;      // low corner, in voxels of the tile's level, without the border
-    int size;       // log2 of a voxel's side in lattice units; the side itself where N = 3
+    ivec3 low;      // low corner without the border, in voxels of the tile's level
+    // log2 of a voxel's side in lattice units; the side itself if N = 3.
+    int size;
     int slot;
     int padding1, padding2, padding3;
 };
 
 // A tile of the fractal (renderer/produce/fractal_content.h) whose brick is being produced.
 struct FractalTile {
-    ivec3 first_texel;  // of the slot in the pool's textures, border included
+    // First texel of the slot in the pool's textures, border included.
+    ivec3 first_texel;
     int slot;
     uint neighbours;    // bit x + 3 (y + 3 z): the tile (x, y, z) - 1 away is not empty
     uint padding1, padding2, padding3;
@@ -38,9 +40,9 @@ struct FractalTile {
 
 // A triangle that may touch a tile of the batch.
 struct BrickPair {
-    uint triangle;      // local to the bound surface chunk
+    uint triangle;      // number in the bound surface chunk
     uint tile_mip;      // tile of the batch | mip << 16
-    // Of the mip: first y | count of y << 8 | first z << 16 | count of z << 24, border included.
+    // Rows of the mip, border included: first y | count of y << 8 | first z << 16 | count of z << 24.
     uint rows;
 };
 

@@ -1,4 +1,4 @@
-// Shadow rays: samples of the light, their sums, and where nothing stands in the light any more.
+// Shadow rays: samples of the light, sums of visibility, and the distances past which no occluder stands.
 #ifndef CAIRN_INTEROP_SHADOW_RAYS_H
 #define CAIRN_INTEROP_SHADOW_RAYS_H
 
@@ -13,27 +13,28 @@
 #define SHADOW_ENDS_SIDE 128
 
 // The shape of a light: enum LightShape of optics/light.h.
-#define LIGHT_SPHERE 0     // a sphere, or a directional light with an angle: even in solid angle
-#define LIGHT_RECTANGLE 1  // even in area
-#define LIGHT_DISK 2
+#define LIGHT_SPHERE 0     // a sphere, or a directional light with an angle: sampled evenly in solid angle
+#define LIGHT_RECTANGLE 1  // sampled evenly in area
+#define LIGHT_DISK 2       // sampled evenly in area
 #define MAX_SHADOW_RAYS 512
 
 #ifdef __cplusplus
 namespace cairn::interop {
 #endif
 
-// Shadow rays of a pixel to samples of a light, while one of them waits.
+// The shadow rays of a pixel to samples of a light, while one of them waits.
 struct ShadowSum {
-    uint ray;              // number of the one that waits
-    float visible;         // sum over those before it
+    uint ray;              // number of the ray that waits
+    float visible;         // sum of the visibilities of the rays before it
 };
 
-// Cones likewise, and what the one that waits has been covered by.
+// The shadow cones of a pixel to samples of a light, while one of them waits.
 struct ShadowConeSum {
-    uint ray;
-    float visible;
+    uint ray;              // number of the cone that waits
+    float visible;         // sum of the visibilities of the cones before it
+    // front_sum of the cone that waits (shaders/march/shadow_cone.glsl).
     float front;
-    float back;
+    float back;            // back_sum of the cone that waits
 };
 
 #ifdef __cplusplus

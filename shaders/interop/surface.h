@@ -11,14 +11,14 @@
 #define SSBO_SURFACE_ATTRIBUTES 2  // SurfaceAttributes per vertex
 #define SSBO_SURFACE_MATERIALS 3   // SurfaceMaterial
 #define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each; then the counts of masks
-#define ATTRIBUTE_POSITION 0       // a vertex's position, where the surface is rasterized
+#define ATTRIBUTE_POSITION 0       // position of a vertex, when the surface is rasterized
 
 // A surface is cut in chunks of at most this many triangles, so that each of its buffers stays under the
 // smallest shader-storage limit in use (128 MiB). A triangle's global number is chunk *
 // SURFACE_CHUNK_TRIANGLES + local.
 #define SURFACE_CHUNK_TRIANGLES 2097152
 
-// Texture coordinates are rounded to 1 / TEXCOORD_UNITS when a surface is built, to 1 / TEXEL_UNITS of a
+// Texture coordinates are rounded to 1 / TEXCOORD_UNITS when a surface is built, and to 1 / TEXEL_UNITS of a
 // texel when an alpha mask is read (shaders/voxelize/alpha_mask.glsl, voxelizer/surface/exact_mask.h).
 #define TEXCOORD_UNITS 67108864.0
 #define TEXCOORD_LIMIT 1048576.0
@@ -34,16 +34,17 @@
 namespace cairn::interop {
 #endif
 
-// A segment is (a, b, b), a point (a, a, a).
+// A triangle. A segment is a triangle (a, b, b), a point (a, a, a).
 struct SurfaceTriangle {
     uvec3 vertices;  // numbers into the chunk's positions and attributes
     uint material;
 };
 
 struct SurfaceAttributes {
-    uint normal;    // octahedral, snorm 16 + 16; 0 = none: use the triangle's own
+    // Octahedral, snorm 16 + 16; 0 = none: the triangle's normal is used.
+    uint normal;
     uint color;     // RGBA8, linear, 255 = 1
-    vec2 texcoord;  // in the texture's space (after KHR_texture_transform)
+    vec2 texcoord;  // texture coordinate, after KHR_texture_transform
 };
 
 struct SurfaceMaterial {
@@ -53,9 +54,11 @@ struct SurfaceMaterial {
     uint height;
     uint flags;           // MATERIAL_*
     float alpha_cutoff;
-    uint alpha_threshold;  // passes: texel alpha * vertex alpha * 256 >= this, both alphas 0 to 255
-    // Masked and textured: first number in SSBO_SURFACE_TEXELS of (width + 1) * (height + 1). Number (x, y)
-    // counts the passing texels left of x and above y, for vertex alpha 255.
+    // A texel passes the mask if texel alpha * vertex alpha * 256 >= alpha_threshold, with alphas of 0 to
+    // 255.
+    uint alpha_threshold;
+    // If masked and textured: place in SSBO_SURFACE_TEXELS of (width + 1) * (height + 1) counts. Count (x, y)
+    // is the number of texels left of x and above y that pass, for vertex alpha 255.
     uint passing_offset;
     uint padding;
 };

@@ -1,5 +1,5 @@
-// Windows: trees that are too deep for a ray to count their voxels (renderer/march/windows.h,
-// shaders/march/windows.glsl).
+// Windows, for trees so deep that a ray cannot count their voxels (renderer/march/windows.h,
+// shaders/march/windows.glsl): cubes of 2^3 tiles around the eye, one per level.
 #ifndef CAIRN_INTEROP_WINDOWS_H
 #define CAIRN_INTEROP_WINDOWS_H
 
@@ -7,29 +7,31 @@
 #include "shaders/interop/vectors.h"
 #endif
 
-#define UBO_WINDOWS 1  // their number, then MarchWindow from the finest on
+#define UBO_WINDOWS 1  // number of windows, then MarchWindow from the finest on
 
-// Cubes of 2^3 tiles around the eye, one per level. Log2 of a window's tile, at most, in the voxels that the
-// ray counts in: floats tell 2^-7 of one.
+// Greatest log2 of the side of a window's tile, in the voxels that the ray counts in: floats then resolve
+// 2^-7 of a voxel.
 #define WINDOW_TILE_BITS 16
 #define MAX_WINDOWS 64
-// A tile of a window: the number of its entry, or
-#define WINDOW_EMPTY 4294967295u    // there is nothing in it
-#define WINDOW_MISSING 2147483648u  // plus the entry of its nearest ancestor, which must be subdivided
+// A tile of a window is the number of its entry, or one of these:
+#define WINDOW_EMPTY 4294967295u    // the tile is empty
+#define WINDOW_MISSING 2147483648u  // this plus the entry of its nearest ancestor, which must be subdivided
 
 #ifdef __cplusplus
 namespace cairn::interop {
 #endif
 
-// 2^3 tiles of one level, with the eye among them. Lengths in its own voxels, positions from its low corner.
+// 2^3 tiles of one level around the eye. Lengths are in voxels of the window, positions relative to its low
+// corner.
 struct MarchWindow {
     vec3 eye;
-    int level;                // of the tiles
-    vec3 light;               // as MarchView.light
-    int light_is_positional;  // 0: it is so far away that its direction says all
-    ivec3 shift;              // the low corner in the next, coarser window
+    int level;                // tree level of the tiles
+    vec3 light;               // position of the light, or unit direction to it
+    // 0: `light` is a direction, also for a positional light far away.
+    int light_is_positional;
+    ivec3 shift;              // low corner in voxels of the next, coarser window
     int padding;
-    uvec4 tiles[2];           // entry of tile x + 2 (y + 2 z), or WINDOW_*
+    uvec4 tiles[2];           // tile x + 2 (y + 2 z): its entry, or WINDOW_*
 };
 
 #ifdef __cplusplus

@@ -1,31 +1,33 @@
-// Between two mips (Crassin et al. 2008, section 4.3). The size that the ray should see (blended_size.glsl)
-// lies between the sides of the voxels of the brick's mip and of the next one: the ray walks the coarser
-// cells, takes the coarse voxel with weight f and the finer ones in the same cell with 1 - f, so that their
-// mean side is that size. At f = 0 and 1 that is the march of one mip alone; where f comes to 1 the next pair
-// of mips begins with 0, for what the next mip (or the parent's brick) holds is the same. A voxel stays a
-// sheet: it gives its share once. Shares add up, so their weighted sum is opaque wherever both mips are.
+// Blends two mips (Crassin et al. 2008, section 4.3). The size of voxel that the ray should see
+// (blended_size.glsl) lies between the sides of the voxels of the brick's mip and of the next one. The ray
+// walks the coarser cells, and takes the coarse voxel with weight f and the finer ones in the same cell with
+// weight 1 - f, so that their mean side is that size. With f = 0 or f = 1 the ray sees one mip alone. Where f
+// reaches 1, the next pair of mips begins with f = 0, and nothing changes, because the next mip (or the
+// parent's brick) holds the same. A voxel counts as a sheet, which gives its share once. Shares add up, so
+// their weighted sum is opaque wherever both mips are.
 //
-// f is one for the whole coarse cell, and linear in the size: no logarithm, whose last bits drivers differ
-// in.
+// f has one value for the whole coarse cell, and is linear in the size. A logarithm would differ in its last
+// bits between drivers.
 
 bool is_occupied(ivec3 voxel, Place place, int mip) {
-    const ivec3 b = place_in(voxel, own_shift_of(place) + mip, M_SHIFT - mip);
+    const ivec3 b = place_in(voxel, brick_voxel_shift_of(place) + mip, M_SHIFT - mip);
     const ivec3 c = cell_of(b, BLOCK_SHIFT);
-    const int blocks = MIP_BLOCKS_A_SIDE(mip);
+    const int blocks = MIP_BLOCKS_PER_SIDE(mip);
     const int word = place.slot * MASK_WORDS + first_mask_of(mip) + c.x + blocks * (c.y + blocks * c.z);
     return empty_voxel_shift(texelFetch(brick_masks, word).xy, b - cell_low(b, BLOCK_SHIFT)) < 0;
 }
 
-// Takes the occupied coarse cell around the ray's voxel; as take_voxel().
+// Takes both mips of the occupied coarse cell around the ray's voxel. `goes_on` and the result are as those
+// of take_voxel().
 bool take_both(inout Ray ray, Place place, out bool goes_on) {
     const int fine_shift = voxel_shift_of(place);
     const float side = float(cell_side(fine_shift));
 #if PROGRESSIVE
-    const bool blends = place.brick_shift == place.tile_shift;  // what stands in does not
+    const bool blends = place.brick_shift == place.tile_shift;  // a brick that stands in is not blended
 #else
     const bool blends = true;
 #endif
-    const float size = blended_size(own_shift_of(place), width_at_cell(ray, fine_shift + 1));
+    const float size = blended_size(brick_voxel_shift_of(place), width_at_cell(ray, fine_shift + 1));
     const float f = blends ? clamp(size / side - 1.0, 0.0, 1.0) : 0.0;
     const ivec3 cell = cell_of(ray.voxel, fine_shift + 1);
     goes_on = true;

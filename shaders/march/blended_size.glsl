@@ -1,26 +1,27 @@
-// The size of the voxels that a ray sees, when levels of detail are blended. Widths are those of
-// march_view(): the pixel's cone times the root of N, so that a tile serves widths from its own voxels' side
-// up to N times that, where its parent takes over. In the first half of that range, by ratio, its own voxels
-// are shown: they are there, and coarser ones are less accurate. In the second half the size grows to that of
-// the parent's voxels, so that nothing changes where those come.
-float blended_size(int own_shift, float width) {
-    const float side = float(cell_side(own_shift));
+// The size of the voxels that a ray sees if levels of detail are blended. Widths are those of march_view():
+// the pixel's cone times the root of N. A tile serves widths from the side of its voxels up to N times that,
+// where its parent takes over. In the first half of that range, by ratio, the tile's voxels are shown: they
+// are there, and coarser ones are less accurate. In the second half the size grows to that of the parent's
+// voxels, so that nothing changes where those take over.
+float blended_size(int brick_voxel_shift, float width) {
+    const float side = float(cell_side(brick_voxel_shift));
     precise float size = width * width / (float(TREE_N) * side);
     return max(size, side);
 }
 
-// The finer of the two mips around that size.
-int blended_mip(int own_shift, float width) {
-    const float size = blended_size(own_shift, width);
+// The finer of the two mips whose voxels are just smaller and just larger than the blended size.
+int blended_mip(int brick_voxel_shift, float width) {
+    const float size = blended_size(brick_voxel_shift, width);
     int mip = 0;
     for (int k = 1; k < BRICK_MIPS; ++k) {
-        if (float(cell_side(own_shift + k)) <= size) mip = k;
+        if (float(cell_side(brick_voxel_shift + k)) <= size) mip = k;
     }
     return mip;
 }
 
-// Width of the ray's cone where the aligned cell around its voxel is nearest to its origin. Exactly the same
-// wherever it is asked: what a ray compares it with must not depend on how a compiler contracts the sum.
+// Width of the ray's cone at the point of the aligned cell around its voxel that is nearest to the ray's
+// origin. Every call gives exactly the same result: comparisons must not depend on how a compiler contracts
+// the sum.
 float width_at_cell(Ray ray, int shift) {
 #if RAYS_WIDEN
     const vec3 low = vec3(cell_low(ray.voxel, shift)) - ray.origin;
@@ -33,12 +34,13 @@ float width_at_cell(Ray ray, int shift) {
 #endif
 }
 
-// Does the ray see, around its voxel, this mip of a tile with voxels of this size, or a coarser one? A mip
-// and the next one are seen by whole voxels of the next one, and a cell is nearer than those that it holds:
-// so a ray that sees a mip sees all finer ones too, and what it sees depends on the place alone, not on the
-// way there.
-bool sees_mip(Ray ray, int own_shift, int mip) {
-    const float width = width_at_cell(ray, own_shift + mip + 1);
-    const float side = float(cell_side(own_shift));
-    return mip == 0 ? width >= side : blended_size(own_shift, width) >= float(cell_side(own_shift + mip));
+// Does the ray see, around its voxel, this mip of a tile whose voxels have the side 2^brick_voxel_shift, or a
+// coarser mip? The answer is the same for a whole voxel of the next mip. A cell is no further away than the
+// cells inside it, so a yes for a mip means a yes for all finer mips, and what a ray sees depends on the
+// place alone, not on the way there.
+bool sees_mip(Ray ray, int brick_voxel_shift, int mip) {
+    const float width = width_at_cell(ray, brick_voxel_shift + mip + 1);
+    const float side = float(cell_side(brick_voxel_shift));
+    if (mip == 0) return width >= side;
+    return blended_size(brick_voxel_shift, width) >= float(cell_side(brick_voxel_shift + mip));
 }

@@ -1,4 +1,4 @@
-// What all passes of rays read and write.
+// The buffers and textures that all passes of rays read and write.
 #include "interop/march.h"
 #include "interop/pool.h"
 #include "interop/tile_query.h"
@@ -25,9 +25,10 @@ layout(binding = TEXTURE_BRICK_COLOR) uniform sampler3D brick_color;
 layout(binding = TEXTURE_BRICK_NORMAL) uniform sampler3D brick_normal;
 
 uniform uint pass_number;
-uniform uint query_capacity;      // at most QUERY_CAPACITY
+uniform uint query_capacity;      // queries that fit, at most QUERY_CAPACITY
 uniform uint usage_query_offset;  // word in usage[] where the query bits start
 #if PROGRESSIVE
-uniform bool stand_in;            // the last pass of a frame: no ray may wait
-uniform uint entry_count;         // of the node pool
+// The last pass of a frame: ancestors stand in, and no ray may wait.
+uniform bool stand_in;
+uniform uint entry_count;         // entries in the node pool
 #endif

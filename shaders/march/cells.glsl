@@ -1,15 +1,17 @@
-// Aligned cubes of voxels, whose sides are powers of CELL_BASE in finest-level voxels. A power is called a
-// shift, because with CELL_BASE 2 it is one.
+// Cells: aligned cubes of voxels whose side is a power of CELL_BASE, in voxels of the finest level. The
+// exponent is called a shift, because with CELL_BASE 2 it is one.
 // Needs the define CELL_BASE: 2 or 3.
 #if CELL_BASE == 3
 
-// Shifts under 20: 3^20 would pass 31 bits. No cell of a tree is larger than 3^13 (MAX_RESOLUTION_BITS).
+// The side of a cell. Shifts must be under 20: 3^20 would pass 31 bits. No cell of a tree is larger than 3^13
+// (MAX_RESOLUTION_BITS).
 int cell_side(int shift) {
     return ((shift & 1) != 0 ? 3 : 1) * ((shift & 2) != 0 ? 9 : 1) * ((shift & 4) != 0 ? 81 : 1) *
            ((shift & 8) != 0 ? 6561 : 1) * ((shift & 16) != 0 ? 43046721 : 1);
 }
-// Number of the cell of that size that a voxel is in, along each axis; for -1 too. Integer quotients are slow
-// on most drivers, so a float proposes one that is off by at most one, and its remainder corrects it.
+// Number along each axis of the cell of that size that holds a voxel; also for voxel -1. Integer division is
+// slow on most drivers, so a float gives a quotient that is off by at most one, and the remainder corrects
+// it.
 ivec3 cell_of(ivec3 voxel, int shift) {
     const int side = cell_side(shift);
     const ivec3 near = ivec3(vec3(voxel) * (1.0 / float(side)));
@@ -17,9 +19,9 @@ ivec3 cell_of(ivec3 voxel, int shift) {
     return near + ivec3(greaterThanEqual(rest, ivec3(side))) - ivec3(lessThan(rest, ivec3(0)));
 }
 bool same_cell(ivec3 a, ivec3 b, int shift) { return all(equal(cell_of(a, shift), cell_of(b, shift))); }
-// The first voxel of that cell.
+// The first voxel of the cell that holds a voxel.
 ivec3 cell_low(ivec3 voxel, int shift) { return cell_of(voxel, shift) * cell_side(shift); }
-// Place of that cell in the cell that is `up` powers larger.
+// Place of the cell that holds a voxel in the cell that is `up` powers larger.
 ivec3 place_in(ivec3 voxel, int shift, int up) {
     const ivec3 cell = cell_of(voxel, shift);
     return cell - cell_low(cell, up);
@@ -28,15 +30,15 @@ ivec3 place_in(ivec3 voxel, int shift, int up) {
 #else
 
 int cell_side(int shift) { return 1 << shift; }
-// Number of the cell of that size that a voxel is in, along each axis.
+// Number along each axis of the cell of that size that holds a voxel.
 ivec3 cell_of(ivec3 voxel, int shift) { return voxel >> shift; }
 bool same_cell(ivec3 a, ivec3 b, int shift) {
     const ivec3 differ = a ^ b;
     return (differ.x | differ.y | differ.z) >> min(shift, 31) == 0;
 }
-// The first voxel of that cell.
+// The first voxel of the cell that holds a voxel.
 ivec3 cell_low(ivec3 voxel, int shift) { return (voxel >> shift) << shift; }
-// Place of that cell in the cell that is `up` powers larger.
+// Place of the cell that holds a voxel in the cell that is `up` powers larger.
 ivec3 place_in(ivec3 voxel, int shift, int up) { return (voxel >> shift) & ((1 << up) - 1); }
 
 #endif

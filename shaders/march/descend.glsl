@@ -1,4 +1,4 @@
-// Down the tree, to the tile that a ray asks for.
+// The way down the tree to the tile that a ray asks for.
 #include "interop/march.h"
 #include "interop/tile_query.h"
 #include "interop/windows.h"
@@ -7,19 +7,21 @@
 struct Place {
     int slot;         // -1: none
     int tile_shift;   // log2 of the tile's side
-    int mip;          // of the brick: the one that is shown, or the finer of the two that are blended
+    // Mip of the brick that is shown, or the finer of the two that are blended.
+    int mip;
 #if PROGRESSIVE
-    // log2 of the side of the tile whose brick it is: that one, or an ancestor that stands in.
+    // log2 of the side of the tile that the brick belongs to: this tile, or an ancestor that stands in.
     int brick_shift;
 #endif
 #if HAS_CONSTANT
-    uint entry;       // of the node that is constant, where one is
+    uint entry;       // entry of the constant node, after DESCENT_CONSTANT
 #endif
-    uvec2 summary;    // which blocks of 4^3 voxels are not empty (all of them when there are at most 64)
+    // Bits of the brick's first 64 blocks of voxels: whether the block is not empty.
+    uvec2 summary;
 };
 
-// Log2 of the side of the brick's own voxels.
-int own_shift_of(Place place) {
+// Log2 of the side of the voxels of the brick's mip 0.
+int brick_voxel_shift_of(Place place) {
 #if PROGRESSIVE
     return place.brick_shift - M_SHIFT;
 #else
@@ -27,26 +29,26 @@ int own_shift_of(Place place) {
 #endif
 }
 
-// Log2 of the side of the voxels that are shown (of the finer ones).
-int voxel_shift_of(Place place) { return own_shift_of(place) + place.mip; }
+// Log2 of the side of the voxels that are shown; of the finer ones, if two mips are blended.
+int voxel_shift_of(Place place) { return brick_voxel_shift_of(place) + place.mip; }
 
 #if BLENDED
-// Has the cone grown past what the place was chosen for? The root's coarsest mip goes on for ever.
+// Has the cone grown past the width that the place was chosen for? The root's coarsest mip serves all widths.
 bool needs_coarser(Ray ray, Place place) {
 #if PROGRESSIVE
-    if (place.brick_shift != place.tile_shift) return false;  // it stands in
+    if (place.brick_shift != place.tile_shift) return false;  // an ancestor stands in
 #endif
-    const int own_shift = own_shift_of(place);
-    if (place.mip + 1 < BRICK_MIPS) return sees_mip(ray, own_shift, place.mip + 1);
-    return place.tile_shift < ROOT_SHIFT && sees_mip(ray, own_shift + N_SHIFT, 0);
+    const int brick_voxel_shift = brick_voxel_shift_of(place);
+    if (place.mip + 1 < BRICK_MIPS) return sees_mip(ray, brick_voxel_shift, place.mip + 1);
+    return place.tile_shift < ROOT_SHIFT && sees_mip(ray, brick_voxel_shift + N_SHIFT, 0);
 }
 #endif
 
 #define DESCENT_FOUND 0    // place holds a brick
-#define DESCENT_EMPTY 1    // nothing here: `empty_shift` is the side of the cell to step over
-#define DESCENT_MISSING 2  // the tile was asked for
+#define DESCENT_EMPTY 1    // the cell of side `empty_shift` around the voxel is empty, to be stepped over
+#define DESCENT_MISSING 2  // the tile is missing, and was queried
 #if HAS_CONSTANT
-#define DESCENT_CONSTANT 3  // place holds a tile of one value, which is not 0
+#define DESCENT_CONSTANT 3  // place holds a constant tile, whose value is not 0
 #endif
 
 void use_brick(inout Place place, int slot) {
@@ -62,7 +64,7 @@ struct Ancestor {
     int tile_shift;
 #if HAS_CONSTANT
     uint entry;
-    bool is_constant;  // in place of the slot
+    bool is_constant;  // the ancestor has one value and no brick
 #endif
 };
 
@@ -94,9 +96,9 @@ int stand_in_for_cell(Ancestor ancestor, int shift, inout Place place, out int e
 }
 #endif
 
-// Does the ray see this tile, around its voxel, by the tile's own brick and not by its children's? By how far
-// the whole tile is away, or the mip's cell around the voxel: whatever way the ray came and wherever it
-// started, it sees the same.
+// Does the ray see this tile, around its voxel, by the tile's brick and not by those of its children? The
+// distance of the whole tile decides, or of the mip's cell around the voxel, so that the answer does not
+// depend on where the ray started and which way it came.
 bool shows(Ray ray, int tile_shift) {
 #if BLENDED
     return sees_mip(ray, tile_shift - M_SHIFT, 0);
@@ -112,7 +114,8 @@ bool shows(Ray ray, int tile_shift) {
 #endif
 }
 
-// Where a descent begins, and what it leaves for the next one. With windows, at the window's tile.
+// The node where a descent begins, and the trail that it leaves for the next one. With windows, descents
+// begin at the window's tile.
 #if WINDOWS || TRAVERSAL == TRAVERSAL_RESTART
 #include "march/trail_restart.glsl"
 #elif TRAVERSAL == TRAVERSAL_STACKLESS
@@ -121,7 +124,7 @@ bool shows(Ray ray, int tile_shift) {
 #include "march/trail_mini_stack.glsl"
 #endif
 
-// Level of a tile of this size around the ray.
+// Tree level of the tile of this size around the ray.
 int level_of_tile(Ray ray, int tile_shift) {
 #if WINDOWS
     return windows.of[ray.window].level + (ROOT_SHIFT - tile_shift) / N_SHIFT;
@@ -165,8 +168,8 @@ int descend(Ray ray, out Place place, out int empty_shift) {
 #else
     place.tile_shift = resume(ray, entry, node);
 #if BLENDED
-    // Around this voxel the ray may see a tile itself whose children it saw elsewhere: this one, or one above
-    // it.
+    // Around this voxel the ray may see a tile by its brick whose children it saw elsewhere: this tile, or
+    // one above it.
     if (place.tile_shift < ROOT_SHIFT && shows(ray, place.tile_shift)) {
         forget_trail();
         place.tile_shift = resume(ray, entry, node);
@@ -176,8 +179,7 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     place.brick_shift = place.tile_shift;
 #endif
 #endif
-    // Nothing in the whole scene. (Further down, a tile may show something itself where none of its children
-    // does.)
+    // The whole scene is empty. (Further down, a tile may show something though none of its children does.)
     if (MAX_LEVEL > 0 && place.tile_shift == ROOT_SHIFT && has_no_child(node)) return DESCENT_EMPTY;
 #if PROGRESSIVE
     Ancestor ancestor = ancestor_of(uvec4(0u), 0u, ROOT_SHIFT);

@@ -1,5 +1,5 @@
-// Which pixel's primary ray a thread takes, and where it begins and ends: in the first pass of all pixels of
-// the blocks that may see anything, later of the pixels whose rays wait.
+// Gives each thread the primary ray of a pixel, with its start and end: in the first pass the pixels of all
+// blocks that may see anything, in later passes the pixels whose rays wait.
 #include "interop/march.h"
 #include "interop/threads.h"
 #if WITH_PROXY
@@ -13,31 +13,33 @@ layout(std430, binding = SSBO_BLOCK_STARTS) readonly buffer BlockStartBlock { Bl
 
 uniform uint ray_count;
 uniform bool first_pass;
-uniform uint list_in;  // words in lists[]
+// First words in lists[] of the list that is read, and of those that are written.
+uniform uint list_in;
 uniform uint list_out;
 uniform uint shadow_list;
 
-RayState state;  // of the thread's ray
+RayState state;  // state of the thread's ray
 
 struct Launch {
-    ivec2 pixel;     // in the band
-    uint index;      // of its state
+    ivec2 pixel;     // place in the band
+    uint index;      // number of the ray's state
     BlockStart start;
 };
 
 #if WITH_MESHES
-MeshPixel mesh;  // at the pixel
+MeshPixel mesh;  // the mesh at the pixel
 #endif
 
-// False when the thread has no pixel.
+// Finds the thread's pixel; false if there is none.
 bool find_pixel(out Launch launch) {
     const uint i = thread_index();
-    launch = Launch(ivec2(0), 0u, BlockStart(0u, 0.0, 1e30));
+    launch = Launch(ivec2(0), 0u, BlockStart(0u, 0.0, ENDLESS));
     if (i >= ray_count) return false;
     if (first_pass) {
         const int blocks = (view.width + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE;
         launch.start = block_starts[i / uint(PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE)];
         const int block = int(launch.start.block);
+        // 32 threads that run together take 4 x 8 pixels.
         launch.pixel = ivec2(block % blocks, block / blocks) * PIXEL_BLOCK_SIDE +
                        ivec2(i % 4u + 4u * (i / 32u % 2u), i / 4u % 8u);
         if (launch.pixel.x >= view.width || launch.pixel.y >= view.row_count) return false;
@@ -64,7 +66,7 @@ Ray launched_ray(Launch launch, PixelRay seen) {
     return ray;
 }
 
-// Puts a new ray where it begins; false when it meets nothing.
+// Puts a new ray at its start; false if it meets nothing.
 bool enter(inout Ray ray, Launch launch, PixelRay seen) {
 #if WITH_MESHES
     if (voxels_hidden) return false;
@@ -83,7 +85,7 @@ bool enter(inout Ray ray, Launch launch, PixelRay seen) {
     return inside;
 }
 
-// Brings the pixel's ray to its end; false when it waits for the next pass.
+// Marches the pixel's ray to its end; false if it waits for the next pass.
 bool march_pixel(Launch launch, PixelRay seen) {
     Ray ray = launched_ray(launch, seen);
     bool inside = true;

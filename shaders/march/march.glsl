@@ -1,22 +1,23 @@
-// The ray-marcher's one loop. The includer supplies visit(); primary and shadow rays differ only in that.
+// The loop of the ray-marcher. The includer supplies visit(), by which primary and shadow rays differ.
 //
-// A ray finds the tile that its cone asks for, marches its brick, and looks for the next tile behind it
-// (Crassin et al. 2008, section 5.1), in one of several ways (TRAVERSAL; descend.glsl). Progress is by
-// integer neighbour steps: every step moves one coordinate of `voxel` by at least one in the ray's direction,
-// so no epsilon is needed and no ray can stall.
+// A ray finds the tile that its cone asks for, marches the tile's brick, and looks for the next tile behind
+// it (Crassin et al. 2008, section 5.1), in one of several ways (TRAVERSAL; descend.glsl). Progress is by
+// integer steps: every step moves one coordinate of `voxel` by at least one in the ray's direction, so no
+// epsilon is needed and no ray can stall.
 //
-// With PROGRESSIVE, for frames that must not take long, rays also ask for the bricks of the nodes that they
-// pass, without waiting for them; and when time is up (stand_in), what is missing is shown by the nearest
-// ancestor that has a brick.
+// With PROGRESSIVE, for frames with a deadline, rays also query the bricks of the nodes that they pass,
+// without waiting for them. When the time is up (stand_in), a missing tile is shown by its nearest ancestor
+// that has a brick.
 //
 // With HAS_CONSTANT, tiles may hold one value that is not 0 (Crassin et al. 2008, section 4.2): the includer
-// supplies visit_constant() too. With HAS_FINAL, tiles may have nothing finer to show. With BLENDED, rays see
-// two mips of a brick, whose shares lead over from one size of voxels to the next (blend.glsl).
+// supplies visit_constant() too. With HAS_FINAL, tiles may be final: finer levels add nothing to them. With
+// BLENDED, rays see two mips of a brick, whose shares change smoothly from one size of voxels to the next
+// (blend.glsl).
 //
 // Needs the defines of TreeShape::defines() (with WINDOWS, for trees whose voxels a ray cannot count,
 // MAX_LEVEL is the depth under a window's tiles) and of renderer/march/march_programs.h; and of the includer
-// RAYS_WIDEN: whether cone_slope is other than 0, and VISIT_TURNS: loop turns that visit() takes at most,
-// which a pass counts (TURN_BUDGET).
+// RAYS_WIDEN, whether cone_slope is other than 0, and VISIT_TURNS, the most loop turns of visit(), which a
+// pass counts (TURN_BUDGET).
 #include "interop/march.h"
 #include "march/buffers.glsl"
 #include "march/tree_cells.glsl"
@@ -24,7 +25,7 @@
 #if WINDOWS
 #include "march/windows.glsl"
 #else
-bool leave_window(Ray ray) { return false; }  // the one there is
+bool leave_window(Ray ray) { return false; }  // there is one cube, the root
 bool enter_windows(inout Ray ray) { return enter_root(ray); }
 #endif
 
@@ -34,29 +35,29 @@ bool enter_windows(inout Ray ray) { return enter_root(ray); }
 // An occupied voxel that a ray crosses.
 struct Sample {
     ivec3 texel;          // first texel of the brick's mip, border included
-    int mip;              // of the brick
-    ivec3 voxel;          // in the mip, [0, MIP_M(mip))
+    int mip;              // mip of the brick
+    ivec3 voxel;          // place in the mip, [0, MIP_M(mip))
     vec3 middle;          // middle of the chord, in voxels of the mip, [0, MIP_M(mip)]
-    vec3 centre;          // of the voxel, from the root cube's low corner
+    vec3 centre;          // centre of the voxel, from the root cube's low corner
     float t;              // distance of the chord's middle
-    float side;           // of the voxel
-    float share;          // weight against the other mip's voxels in the same place, (0, 1]
+    float side;           // side of the voxel
+    float share;          // weight in the blend with the other mip, (0, 1]
 };
 
-// Takes one occupied voxel; false stops the ray.
+// Takes one occupied voxel; false ends the ray.
 bool visit(inout Ray ray, Sample s);
 
 #if HAS_CONSTANT
-// A tile of one value that a ray crosses, as so many voxels that are all alike.
+// A constant tile that a ray crosses, as a number of equal voxels.
 struct ConstantRun {
-    vec4 mean;        // as the texels of brick_color
-    float t_in;       // distance where the ray enters it
-    float t_out;      // and where it leaves it, or ends
+    vec4 mean;        // the value, as a texel of brick_color
+    float t_in;       // distance where the ray enters the tile
+    float t_out;      // distance where the ray leaves the tile, or ends
     int voxel_shift;  // log2 of a voxel's side
-    int voxels;       // that the ray crosses; at most 3 BRICK_M - 2
+    int voxels;       // number of voxels that the ray crosses; at most 3 BRICK_M - 2
 };
 
-// Takes it; false stops the ray. `entered` is the ray as it comes into the tile.
+// Takes a constant tile; false ends the ray. `entered` is the ray where it enters the tile.
 bool visit_constant(Ray entered, ConstantRun run);
 #endif
 
@@ -68,7 +69,7 @@ bool visit_constant(Ray entered, ConstantRun run);
 #include "march/skim.glsl"
 
 #if HAS_CONSTANT
-// Through a tile of one value; false when the ray is done.
+// Crosses a constant tile; false if the ray is done.
 bool cross_constant(inout Ray ray, Place place, inout int turns) {
     const Ray entered = ray;
     ConstantRun run;
@@ -89,7 +90,7 @@ bool cross_constant(inout Ray ray, Place place, inout int turns) {
 #define SEEK_DONE 1
 #define SEEK_MISSING 2
 
-// Brings the ray to its next occupied voxel: down the tree, over empty tiles, through bricks.
+// Moves the ray to its next occupied voxel: down the tree, over empty tiles, through bricks.
 int seek(inout Ray ray, inout Place place, inout int turns) {
     for (;;) {
         int empty_shift = 0;
@@ -121,12 +122,12 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
     }
 }
 
-// Takes the voxel of a mip around the ray's voxel, which must be occupied, and brings the ray behind it.
-// `goes_on` says whether there is more of the ray; false when visit() has stopped it.
+// Takes the voxel of a mip around the ray's voxel, which must be occupied, and moves the ray behind it.
+// `goes_on`: the ray has not come to its end. The result is false if visit() has ended the ray.
 bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_on) {
-    const int voxel_shift = own_shift_of(place) + mip;
+    const int voxel_shift = brick_voxel_shift_of(place) + mip;
     const ivec3 low = cell_low(ray.voxel, voxel_shift);
-    const ivec3 brick_low = cell_low(ray.voxel, own_shift_of(place) + M_SHIFT);
+    const ivec3 brick_low = cell_low(ray.voxel, brick_voxel_shift_of(place) + M_SHIFT);
     const float side = float(cell_side(voxel_shift));
     const float t_in = ray.t;
     Sample s;
@@ -146,12 +147,13 @@ bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_
 #include "march/blend.glsl"
 #endif
 
-// Marches until the ray is done, or until it misses a tile or pauses: then it stands where it resumes.
+// Marches until the ray is done, or until it misses a tile or pauses; then the ray stands where it will
+// resume.
 //
-// Threads that run side by side all pay for what any of them does in an innermost loop, so the loops are
+// Threads that run side by side all pay for the work of any of them in an innermost loop. So the loops are
 // nested by how seldom their work is needed: an occupied voxel, a tile, an empty cell.
 //
-// `turns` counts what a thread has done in this pass; it may march several rays.
+// `turns` counts the turns of the thread in this pass; a thread may march several rays.
 int march(inout Ray ray, inout int turns) {
     Place place = no_place();
     forget_trail();

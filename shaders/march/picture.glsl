@@ -1,6 +1,5 @@
-// The picture of the band: a word per pixel. It is a colour (RGBA8); or, where the light is shown
-// (SHOW_LIGHT), the bits of a float; or, until a pixel that has a mesh is written, the light that reaches its
-// voxels.
+// The picture of the band, a word per pixel: a colour (RGBA8) or, if the light is shown (SHOW_LIGHT), the
+// bits of a float. Until a pixel with a mesh is written, its word holds the light that reaches its voxels.
 #include "interop/march.h"
 
 layout(std430, binding = SSBO_PICTURE) buffer PictureBlock { uint picture[]; };
@@ -20,10 +19,10 @@ void store_color(uint index, vec3 color, float alpha) {
 }
 void store_background(uint index) { picture[index] = view.background_pixel; }
 
-// A number instead of a colour.
+// Stores a number instead of a colour.
 void store_number(uint index, float number) { picture[index] = floatBitsToUint(number); }
 
-// The light that reaches the voxels of a pixel, kept while the light on the mesh behind them is looked for.
+// The light that reaches the voxels of a pixel, kept while shadow rays start from the mesh behind them.
 #define LIGHT_NOT_KNOWN (-1.0)
 void keep_light_on_voxels(uint index, float light) { store_number(index, light); }
 float kept_light_on_voxels(uint index) { return uintBitsToFloat(picture[index]); }

@@ -1,5 +1,5 @@
-// Where a pixel's ray starts and goes; distances along it count from `origin`, which is `skipped` from the
-// eye.
+// The start and direction of a pixel's ray. Distances along the ray count from `origin`, which lies `skipped`
+// from the eye.
 // Needs the define WINDOWS, and MarchView `view`.
 struct PixelRay {
     vec3 origin;
@@ -8,13 +8,13 @@ struct PixelRay {
 };
 
 #if WINDOWS
-// In voxels of the window of what the pixel shows.
+// The eye in voxels of the window that the pixel shows most of.
 vec3 eye_there() { return windows.of[seen_window].eye; }
 #else
 vec3 eye_there() { return view.eye; }
 #endif
 
-// `pixel` in the band.
+// `pixel` counts from the band's first.
 PixelRay pixel_ray(ivec2 pixel) {
     const vec2 size = vec2(view.width, view.height);
     const vec2 place = (vec2(pixel + ivec2(0, view.first_row)) + 0.5) / size * 2.0 - 1.0;

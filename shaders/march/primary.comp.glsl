@@ -22,7 +22,7 @@ bool visit(inout Ray ray, Sample s) {
 #if HAS_COLOR
     const vec4 mean = filtered(brick_color, around);
     color = mean.rgb / max(mean.a, LEAST_COVERAGE);
-    color *= color;  // stored as square roots, for the eye's sake
+    color *= color;  // stored as square roots, whose steps look even to the eye
 #endif
     const Faces faces = filtered_faces(around, ray.direction);
 #if SHOW_TREE
@@ -42,7 +42,7 @@ bool visit(inout Ray ray, Sample s) {
 }
 
 #if HAS_CONSTANT
-// Voxel by voxel, as if they stood in a brick, without a normal.
+// Takes voxel by voxel, as if they stood in a brick, without normals.
 bool visit_constant(Ray entered, ConstantRun run) {
 #if HAS_COLOR
     vec3 color = run.mean.rgb / max(run.mean.a, LEAST_COVERAGE);
@@ -66,7 +66,7 @@ bool visit_constant(Ray entered, ConstantRun run) {
 }
 #endif
 
-// Is there light to be stopped on its way to this point?
+// Whether light can arrive at the pixel's voxels, so that a shadow ray must look for it.
 bool needs_shadow_ray(PixelRay seen) {
     if (view.casts_shadows == 0 || state.color.a > 1.0 - LEAST_COVERAGE) return false;
     const vec3 point = seen.origin + seen.direction * state.depth;
@@ -80,12 +80,12 @@ void main() {
     if (!march_pixel(launch, seen)) return;
 
     if (state.color.a <= OPAQUE_TRANSMITTANCE) {
-        // What little shines through is the surface's own: no background in a solid thing.
+        // The little that still shines through is given to the surface: a solid thing shows no background.
         state.color.rgb /= 1.0 - state.color.a;
         state.color.a = 0.0;
     }
 #if WINDOWS
-    const PixelRay shown = pixel_ray(launch.pixel);  // in the window of what it shows
+    const PixelRay shown = pixel_ray(launch.pixel);  // in voxels of the window that the pixel shows most of
 #else
     const PixelRay shown = seen;
 #endif

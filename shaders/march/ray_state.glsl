@@ -1,14 +1,14 @@
-// A ray between two passes: how RayState keeps where it stands.
+// A ray between two passes: how RayState holds its place.
 #include "interop/march.h"
 
 RayState new_ray_state() {
     return RayState(vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0), 0.0, uvec2(0u), 0.0, 0.0);
 }
 
-// Has the ray stood anywhere? Not the shadow ray of a pixel that has only been seen.
+// Whether the ray has started. The shadow ray of a pixel has not, right after the primary ray's end.
 bool has_started(RayState state) { return (state.place.y & RAY_NOT_STARTED) == 0u; }
 
-// Remembers the voxel that weighs most of those that the pixel shows. @return whether it is this one.
+// Notes the depth of the voxel if it weighs most so far in the pixel. @return whether it does.
 bool note_heaviest(inout RayState state, float weight, float depth) {
     if (!(weight > state.weight)) return false;
     state.weight = weight;
@@ -17,8 +17,8 @@ bool note_heaviest(inout RayState state, float weight, float depth) {
 }
 
 #if WINDOWS
-// 17 bits a coordinate, then 6 for the ray's window and 6 for the seen voxel's. The last bit says whether it
-// has started.
+// 17 bits per coordinate, then 6 for the ray's window and 6 for the window of the seen voxel. The last bit
+// marks a ray that has not started.
 uvec2 pack_place(ivec3 v, int window) {
     const uvec3 u = uvec3(v);
     return uvec2(u.x | u.y << 17, u.y >> 15 | u.z << 2 | uint(window) << 19 | uint(seen_window) << 25);
@@ -35,7 +35,7 @@ void store_position(inout RayState state, Ray ray) {
 
 int stored_seen_window(RayState state) { return int(state.place.y >> 25 & 63u); }
 
-// The ray is as it started, in the window where it did.
+// Moves a ray, given as it started and in the window where it started, to its stored place.
 void load_position(inout Ray ray, RayState state) {
     const uvec2 p = state.place;
     const int window = int(p.y >> 19 & 63u);
@@ -45,7 +45,7 @@ void load_position(inout Ray ray, RayState state) {
     seen_window = stored_seen_window(state);
 }
 #else
-// 21 bits a coordinate. The last bit says whether the ray has started.
+// 21 bits per coordinate. The last bit marks a ray that has not started.
 uvec2 pack_voxel(ivec3 v) {
     const uvec3 u = uvec3(v);
     return uvec2(u.x | u.y << 21, u.y >> 11 | u.z << 10);

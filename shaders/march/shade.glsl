@@ -1,13 +1,14 @@
-// From what a primary ray gathered and how much of the light reaches it, to a pixel.
+// Shading: computes a pixel from what a primary ray gathered and the share of the light that arrives there.
 #include "interop/march.h"
-#include "interop/mesh.h"  // here, because a file is included once, and the next place is under a condition
+#include "interop/mesh.h"  // here, because a file is included once, and the next #include is under a condition
+#include "common/sky_light.glsl"
 #include "march/picture.glsl"
 #include "march/pixel_ray.glsl"
 #include "march/ray_state.glsl"
 
-// Where the light is, as seen from the voxel that the pixel shows.
+// The place of the light, in units of the window that the pixel shows most of.
 struct LightPlace {
-    vec3 at;  // position, or unit direction to it
+    vec3 at;  // position of the light, or unit direction to it
     bool is_positional;
 };
 
@@ -24,15 +25,15 @@ vec3 direction_to_light(vec3 point) {
     return light.is_positional ? normalize(light.at - point) : light.at;
 }
 
-// A normal, turned to the viewer: surfaces have two sides. At a silhouette a voxel's mean looks away only
-// because its surface bends away in it, and is seen edge on.
+// A normal, turned to the viewer, because surfaces have two sides. At a silhouette the mean normal of a voxel
+// looks away only because the surface bends away within the voxel; then the surface is seen edge on.
 vec3 turned_to_viewer(vec3 normal, vec3 direction) {
     const float away = dot(normal, direction);
     if (away <= 0.0) return normal;
     return away < SILHOUETTE_BEND ? normalize(normal - away * direction) : -normal;
 }
 
-// A gathered normal.
+// The unit normal of a sum of normals, turned to the viewer.
 vec3 facing_normal(vec3 gathered, vec3 direction) {
     const float size = length(gathered);
     if (size < 1e-6) return -direction;
@@ -40,10 +41,10 @@ vec3 facing_normal(vec3 gathered, vec3 direction) {
 }
 vec3 facing_normal(RayState state, vec3 direction) { return facing_normal(state.normal, direction); }
 
-// What a surface of base colour 1 sends to the viewer.
+// The light that a surface of base colour 1 sends to the viewer.
 vec3 light_on(vec3 point, vec3 normal, float visibility) {
     const float facing = max(dot(normal, direction_to_light(point)), 0.0);
-    const float sky = view.ambient * (0.75 + 0.25 * normal.y);
+    const float sky = view.ambient * sky_share(normal);
     return view.light_color * (sky + (1.0 - view.ambient) * facing * visibility);
 }
 
@@ -52,10 +53,10 @@ vec3 light_on_voxels(RayState state, PixelRay seen, float visibility) {
     return light_on(seen.origin + seen.direction * state.depth, normal, visibility);
 }
 
-// Is the share of the light to be shown, and no colour?
+// Whether the picture shows the share of the light instead of colours.
 bool shows_light() { return view.shown == SHOW_LIGHT; }
 
-// What arrives of the light at a surface, which may turn its back to it.
+// The share of the light that arrives at a surface; 0 if the surface turns its back to the light.
 float light_at(vec3 point, vec3 normal, float visibility) {
     return dot(normal, direction_to_light(point)) > 0.0 ? visibility : 0.0;
 }
@@ -85,23 +86,24 @@ void write_pixel(ivec2 pixel, RayState state, float visibility) {
 
 vec3 mesh_point(MeshPixel mesh, PixelRay seen) { return seen.origin + seen.direction * mesh.t; }
 
-// The interpolated normal, on the side of the triangle that is seen. At a silhouette it may look away all the
-// same.
+// The interpolated normal, on the side of the triangle that is seen. At a silhouette it may still look away
+// from the viewer; then it is turned until it is seen edge on.
 vec3 mesh_normal(MeshPixel mesh, PixelRay seen) {
     const vec3 normal = dot(mesh.normal, mesh.plane) < 0.0 ? -mesh.normal : mesh.normal;
     return normalize(normal - max(dot(normal, seen.direction), 0.0) * seen.direction);
 }
 
-// Is there light to be stopped on its way to the mesh, and does anyone see it?
+// Whether light can arrive at the mesh and the mesh is visible, so that a shadow ray must look for the light.
 bool mesh_needs_shadow_ray(MeshPixel mesh, PixelRay seen, float transmittance) {
     if (!mesh_shadows || view.casts_shadows == 0) return false;
     if (!is_there(mesh) || transmittance < OPAQUE_TRANSMITTANCE) return false;
-    // Shading looks at the interpolated normal; whether light arrives is told by the triangle.
+    // Shading uses the interpolated normal; the share of the light that is shown depends on the triangle's
+    // plane.
     const vec3 normal = shows_light() ? mesh.plane : mesh_normal(mesh, seen);
     return dot(normal, direction_to_light(mesh_point(mesh, seen))) > 0.0;
 }
 
-// What stands behind the voxels: the mesh, or the background, whose alpha is 0.
+// The colour behind the voxels: the mesh, or the background, whose alpha is 0.
 vec4 lit_mesh(MeshPixel mesh, PixelRay seen, float mesh_visibility) {
     if (!is_there(mesh)) return vec4(view.background, 0.0);
     const vec3 normal = mesh_normal(mesh, seen);

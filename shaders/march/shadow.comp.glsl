@@ -1,5 +1,5 @@
-// One thread is one waiting shadow ray, or a pixel's share of them: from what a primary ray saw, to the
-// light.
+// One thread is the waiting shadow rays of a pixel, one or more: from the surface that the primary ray met to
+// the light.
 #define RAYS_WIDEN SHADOW_CONES
 #define VISIT_TURNS 0
 #include "interop/march.h"
@@ -10,58 +10,63 @@
 #if SHADOW_CONES
 #include "march/shadow_cone.glsl"
 #endif
-#include "march/own_surface.glsl"
-#define TELLS_SURFACE (WITH_MESHES || SOFT_SHADOWS)
-#if TELLS_SURFACE
+#include "march/self_shadow.glsl"
+#define USES_SURFACE_PLANE (WITH_MESHES || SOFT_SHADOWS)
+#if USES_SURFACE_PLANE
 #include "march/surface_plane.glsl"
 #endif
 #include "march/shadow_pass.glsl"
 
 layout(binding = TEXTURE_SHADOW_ENDS) uniform samplerBuffer shadow_ends;
 
-float receiver_width;  // of the rays that start there
-// Of the voxels that the receiver is shown with; of the finer ones, when they are blended.
-float own_side;
+float receiver_width;  // of the rays that start at the receiver
+// Side of the voxels that the receiver is shown with; of the finer ones, if two mips are blended.
+float receiver_voxel_side;
 
-#define OWN_HEIGHT 1.75  // in voxels
+#define SELF_SHADOW_HEIGHT 1.75  // in sides of the receiver's voxels
 
-// Is this voxel the receiver's own?
-bool is_own(Ray ray, vec3 centre, float t, float side) {
-    float height = own_height;
-    float reach = own_reach;
-    float own = own_side;
+// Is this voxel part of the receiver's surface?
+bool is_receiver_voxel(Ray ray, vec3 centre, float t, float side) {
+    float height = self_shadow_height;
+    float reach = self_shadow_reach;
+    float receiver_side = receiver_voxel_side;
 #if WINDOWS
-    // Of the receiver's voxels in the ray's.
+    // Side of the receiver's voxels, in units of the ray's.
     const float scale = ldexp(1.0, N_SHIFT * (seen_window - ray.window));
     height *= scale;
     reach *= scale;
-    own *= scale;
+    receiver_side *= scale;
     const vec3 from_receiver = centre - ray.origin;
 #else
     const vec3 from_receiver = centre - receiver;
 #endif
 #if BLENDED || RAYS_WIDEN
-    // What stands in, the coarser of two mips, and what a cone sees further on.
-    if (side > own && own_reach > 0.0) {
-        height *= side / own;
-        reach = max(reach, own_reach_of(side));
+    // Voxels that stand in for missing ones, the coarser of two mips, and what a cone sees further on, are
+    // larger than the receiver's voxels.
+    if (side > receiver_side && self_shadow_reach > 0.0) {
+        height *= side / receiver_side;
+        reach = max(reach, self_shadow_reach_of(side));
     }
 #elif PROGRESSIVE
-    if (stand_in && own_reach > 0.0) {  // its own voxels may be larger than they should be
-        height = max(height, OWN_HEIGHT * side);
-        reach = max(reach, own_reach_of(side));
+    if (stand_in && self_shadow_reach > 0.0) {  // the receiver's voxels may be larger than they should be
+        height = max(height, SELF_SHADOW_HEIGHT * side);
+        reach = max(reach, self_shadow_reach_of(side));
     }
 #endif
-    return is_own(from_receiver, t, height, reach);
+    return is_receiver_voxel(from_receiver, t, height, reach);
 }
 
 #if SHADOW_CONES
-// Has the cone grown to voxels that are coarser than those of the receiver?
+// A voxel whose side is more than this many sides of the receiver's voxels is coarse: levels differ by 2 or
+// more.
+#define COARSE_RATIO 1.5
+
+// Has the cone grown to voxels that are coarser than the receiver's?
 bool is_coarse(Ray ray, float side) {
 #if WINDOWS
-    return side > 1.5 * ldexp(own_side, N_SHIFT * (seen_window - ray.window));
+    return side > COARSE_RATIO * ldexp(receiver_voxel_side, N_SHIFT * (seen_window - ray.window));
 #else
-    return side > 1.5 * own_side;
+    return side > COARSE_RATIO * receiver_voxel_side;
 #endif
 }
 #endif
@@ -69,19 +74,19 @@ bool is_coarse(Ray ray, float side) {
 bool visit(inout Ray ray, Sample s) {
 #if SHADOW_CONES
     if (is_coarse(ray, s.side)) {
-        if (!is_own(ray, s.centre, s.t, s.side)) take_coarse(ray, s);
+        if (!is_receiver_voxel(ray, s.centre, s.t, s.side)) take_coarse(ray, s);
         return visibility * left_by_sums() > OPAQUE_TRANSMITTANCE;
     }
 #endif
-#if TELLS_SURFACE
+#if USES_SURFACE_PLANE
 #if WINDOWS
-    const float near = ldexp(own_reach, N_SHIFT * (seen_window - ray.window));
+    const float near = ldexp(self_shadow_reach, N_SHIFT * (seen_window - ray.window));
 #else
-    const float near = own_reach;
+    const float near = self_shadow_reach;
 #endif
     if (passes_by(ray, s, near)) return true;
 #endif
-    if (!is_own(ray, s.centre, s.t, s.side)) visibility = behind(visibility, coverage_of(s), s.share);
+    if (!is_receiver_voxel(ray, s.centre, s.t, s.side)) visibility = behind(visibility, coverage_of(s), s.share);
     return visibility > OPAQUE_TRANSMITTANCE;
 }
 
@@ -97,7 +102,7 @@ bool visit_constant(Ray entered, ConstantRun run) {
         const float t_in = entered.t;
         const vec3 centre = vec3(cell_low(entered.voxel, run.voxel_shift)) + 0.5 * side;
         const bool goes_on = step_over(entered, run.voxel_shift);
-        if (!is_own(entered, centre, 0.5 * (t_in + entered.t), side)) {
+        if (!is_receiver_voxel(entered, centre, 0.5 * (t_in + entered.t), side)) {
             visibility = behind(visibility, coverage, 1.0);
         }
         if (!goes_on) break;
@@ -106,17 +111,17 @@ bool visit_constant(Ray entered, ConstantRun run) {
 }
 #endif
 
-// Distance behind which nothing stands between the receiver and a directional light.
+// Distance from the receiver past which no occluder stands before a directional light.
 float end_of_occluders(vec3 to_light) {
-    if (view.has_shadow_ends == 0) return 1e30;
+    if (view.has_shadow_ends == 0) return ENDLESS;
     const vec2 place = vec2(dot(receiver, view.shadow_across) + view.shadow_across_offset,
                             dot(receiver, view.shadow_down) + view.shadow_down_offset);
     const ivec2 texel = clamp(ivec2(floor(place)), 0, SHADOW_ENDS_SIDE - 1);
     return texelFetch(shadow_ends, texel.y * SHADOW_ENDS_SIDE + texel.x).r - dot(receiver, to_light);
 }
 
-// The share of a sample that stands above the receiver's horizon. A cone is brought there as a whole: to the
-// middle of what is left of it.
+// The share of a sample that lies above the receiver's horizon. A cone that reaches below the horizon is
+// moved: to the middle of its part above.
 float weight_of(inout LightSample there) {
     const float rise = dot(receiver_normal, there.direction);
 #if SHADOW_CONES
@@ -132,16 +137,16 @@ float weight_of(inout LightSample there) {
 
 bool trace_one(LightSample there, bool starts) {
 #if SHADOW_CONES
-    const float widening = sqrt(float(TREE_N)) * there.width;  // the nearest level, by ratio
+    const float widening = sqrt(float(TREE_N)) * there.width;  // so that the nearest level, by ratio, is seen
 #else
     const float widening = 0.0;
 #endif
-    look_to_light(there.direction, own_side);
+    look_to_light(there.direction, receiver_voxel_side);
     Ray ray = make_ray(receiver, there.direction, there.reach, receiver_width, widening);
 #if WINDOWS
     ray.window = seen_window;
 #endif
-    if (!march_to_light(ray, own_end(own_side), starts)) return false;
+    if (!march_to_light(ray, self_shadow_end(receiver_voxel_side), starts)) return false;
 #if SHADOW_CONES
     visibility *= left_by_sums();
 #endif
@@ -149,13 +154,14 @@ bool trace_one(LightSample there, bool starts) {
     return true;
 }
 
-// Where the rays start: at this depth of the pixel's ray, on a surface with this normal.
+// Sets the receiver, where shadow rays start: at this depth of the pixel's ray, on a surface with this
+// normal.
 void place_receiver(PixelRay seen, float depth, vec3 normal) {
     receiver = seen.origin + seen.direction * depth;
     receiver_normal = normal;
     receiver_width = width_at(seen, depth);
-    own_side = side_shown(receiver_width);
-    own_height = OWN_HEIGHT * own_side;
+    receiver_voxel_side = side_shown(receiver_width);
+    self_shadow_height = SELF_SHADOW_HEIGHT * receiver_voxel_side;
 }
 
 #if WITH_MESHES
@@ -169,7 +175,7 @@ void main() {
     const bool at_mesh = light_on_voxels_before >= 0.0;
     if (at_mesh) {
         place_receiver(seen, mesh.t, mesh.plane);
-        own_height = mesh_own_height * own_side;  // its place is known exactly
+        self_shadow_height = mesh_self_shadow_height * receiver_voxel_side;  // the place of a mesh is exact
     } else {
         place_receiver(seen, state.depth, facing_normal(state, seen.direction));
     }

@@ -1,20 +1,21 @@
-// What a shadow ray takes from voxels that are coarser than those at its receiver: then it is a cone, as wide
-// as they are.
+// Shadow rays through voxels that are coarser than those at the receiver: there a ray is a cone, as wide as
+// these voxels.
 //
-// Of a voxel's surface, a cone sees the area across its own direction. Summed over all voxels that the ray
-// crosses, and between voxels in the middle of each layer across it, that is how often the things in the
-// cone's way cover it on average. The front of a solid thing covers what its back covers too, so what faces
-// the light and what turns away from it are summed apart, and the larger sum counts. Sums of the coverage
-// itself were tried, its products and its greatest value: they are too dark at the silhouettes of solid
-// things, where many voxels lie behind each other, or let light through slanted surfaces.
-float front_sum;
-float back_sum;
+// A cone sees, of the surface in a voxel, the area across the cone's direction. That area is interpolated
+// between the voxels of each layer, in the layer's middle, and summed over all layers that the ray crosses.
+// The sum is how often things in the cone's way cover it on average. The front of a solid thing covers the
+// same part of the cone as its back. So surfaces that face the light and surfaces that turn away from it are
+// summed apart, and the larger sum counts. Sums of the coverage itself, its products and its greatest value
+// were tried: they are too dark at the silhouettes of solid things, where many voxels lie behind each other,
+// or let light through slanted surfaces.
+float front_sum;  // of surfaces that face the receiver
+float back_sum;   // of surfaces that face the light
 
 // The share of the light that the coarser voxels let through.
 float left_by_sums() { return max(1.0 - max(front_sum, back_sum), 0.0); }
 
-// What texel p's voxel covers of the column through it, along the ray. x: with surfaces that face the
-// receiver; y: with those that face the light. `along`: the direction's component across the layer.
+// The share of the column through texel p's voxel, along the ray, that its surface covers. x: surface that
+// faces the receiver; y: surface that faces the light. `along`: component of the direction across the layer.
 vec2 covered_across(ivec3 p, vec3 direction, float along) {
     const vec4 texel = texelFetch(brick_color, p, 0);
 #if HAS_COLOR
@@ -24,14 +25,14 @@ vec2 covered_across(ivec3 p, vec3 direction, float along) {
 #endif
     const vec3 normal = mean_normal(texelFetch(brick_normal, p, 0));
     const float most = max(abs(normal.x), max(abs(normal.y), abs(normal.z)));
-    if (most < LEAST_MEAN_NORMAL) return vec2(coverage);  // opposite sides that cancel out
-    // Coverage is the area across the axis where that is greatest.
+    if (most < LEAST_MEAN_NORMAL) return vec2(coverage);  // normals of opposite sides cancel out
+    // Coverage is the area across the axis for which the area is greatest.
     const float facing = dot(normal, direction);
     const float share = min(coverage * abs(facing) / (most * along), 1.0);
     return facing < 0.0 ? vec2(share, 0.0) : vec2(0.0, share);
 }
 
-// Takes the voxel where the ray crosses the middle of a layer, in which it may cross three.
+// Takes a voxel if the ray crosses the middle of its layer in it; the ray may cross three voxels of a layer.
 void take_coarse(Ray ray, Sample s) {
     const vec3 size = abs(ray.direction);
     const bool along_x = size.x >= size.y && size.x >= size.z;

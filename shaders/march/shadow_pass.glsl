@@ -1,5 +1,5 @@
-// One pass of shadow rays that march: a thread takes up a pixel that waits, sends its rays on, and leaves it
-// to the next pass where one of them must wait again.
+// One pass of shadow rays that march: a thread takes up a pixel that waits, sends the pixel's rays on, and
+// leaves the pixel to the next pass if a ray must wait again.
 #include "interop/march.h"
 #include "interop/threads.h"
 #define GROUP_SIZE THREADS_PER_GROUP
@@ -7,18 +7,19 @@
 #include "march/shadow_rays.glsl"
 
 uniform uint ray_count;
-uniform uint list_in;  // words in lists[]
+// First words in lists[] of the list that is read, and of the one that is written.
+uniform uint list_in;
 uniform uint list_out;
 
-RayState state;  // of the thread's pixel
+RayState state;  // state of the thread's pixel
 
 struct WaitingPixel {
-    uint index;    // of its state
-    ivec2 pixel;   // in the band
+    uint index;    // number of the pixel's state
+    ivec2 pixel;   // place in the band
     bool starts;   // no shadow ray has been sent yet
 };
 
-// False when the thread has no pixel.
+// Takes up the thread's pixel; false if there is none.
 bool take_up(out WaitingPixel waiting) {
     const uint i = thread_index();
     waiting = WaitingPixel(0u, ivec2(0), true);
@@ -37,11 +38,11 @@ void leave_waiting(uint index) {
     lists[list_out + atomicAdd(counters.waiting_shadow, 1u)] = index;
 }
 
-// march() counts the turns, and pauses within a ray.
+// Never, because march() counts the turns, and pauses within a ray.
 bool pauses_before_ray() { return false; }
 
-// Brings a ray from its start at distance `t_start`, or from where it stood, to the light. False when it must
-// wait: then it is stored.
+// Moves a ray to the light: from distance `t_start` if it starts, else from where it stood. False if the ray
+// must wait; then it is stored.
 bool march_to_light(Ray ray, float t_start, bool starts) {
     bool inside = true;
     if (starts) {
@@ -60,11 +61,10 @@ bool march_to_light(Ray ray, float t_start, bool starts) {
     return true;
 }
 
-// Nothing, where a ray would have stopped.
+// The light that is left, or 0 if it is so little that a ray would have stopped.
 float clear_opaque(float left) { return left > OPAQUE_TRANSMITTANCE ? left : 0.0; }
 
-// Side of the voxels that a cone of this width is shown with (descend()); of the finer ones, when two mips
-// are blended.
+// Side of the voxels that a cone of this width sees (descend()); of the finer ones, if two mips are blended.
 float side_shown(float width) {
     int shift = ROOT_SHIFT - M_SHIFT;
     for (int level = 0; level < MAX_LEVEL && float(cell_side(shift)) > width; ++level) shift -= N_SHIFT;

@@ -1,25 +1,26 @@
-// The shadow rays of a pixel: one to the middle of the light, or with SOFT_SHADOWS some to samples of it, of
-// which the one that had to wait and those behind it go on in the next pass. Sums go from pass to pass by
-// shadow_sums[].
+// The shadow rays of a pixel: one to the middle of the light or, with SOFT_SHADOWS, several to samples of the
+// light. A ray that must wait, and the rays after it, go on in the next pass; shadow_sums[] carries their
+// sums from pass to pass.
 //
 // The includer supplies `receiver`, where the rays start, and four functions:
 //     bool pauses_before_ray()
-//         has the thread done enough in this pass?
+//         whether the thread has done enough in this pass
 //     bool trace_one(LightSample there, bool starts)
-//         one ray, from its start or on from where it stood; leaves what it has of the light in `visibility`.
-//         False when it must wait.
+//         traces one ray, from its start or from where it stood; sets `visibility` to the share of the light that
+//         arrives by it. False if the ray must wait.
 //     float weight_of(inout LightSample there)
 //         the share of a sample that can light the receiver at all, by how the surface is turned; it may move
 //         the sample. 0: no ray is sent.
 //     float end_of_occluders(vec3 to_light)
-//         the distance behind which nothing stands before a directional light
+//         the distance past which no occluder stands before a directional light
 // Needs the defines SOFT_SHADOWS and SHADOW_CONES, and shade.glsl.
 #include "interop/shadow_rays.h"
 
 struct LightSample {
-    vec3 direction;  // from the receiver, unit
-    float reach;     // how far it is
-    float width;     // of its share of the light, at distance 1
+    vec3 direction;  // unit direction from the receiver
+    float reach;     // distance from the receiver
+    // Width at distance 1 of the part of the light that the sample stands for.
+    float width;
 };
 
 bool pauses_before_ray();
@@ -33,7 +34,8 @@ layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { ShadowConeSum
 layout(std430, binding = SSBO_SHADOW_SUMS) buffer ShadowSumBlock { ShadowSum shadow_sums[]; };
 #endif
 
-float visibility;      // what the ray at hand has been left of the light; in the end, what all of them have
+// The share of the light that is left to the ray that is traced; after find_light(), the mean over all rays.
+float visibility;
 int shadow_turns = 0;  // loop turns that the thread has taken in this pass
 
 #if SOFT_SHADOWS
@@ -47,7 +49,7 @@ void store_sum(uint index, uint ray, float visible) {
 void store_sum(uint index, uint ray, float visible) { shadow_sums[index] = ShadowSum(ray, visible); }
 #endif
 
-// How much of the light reaches the receiver, in `visibility`. False when a ray must wait.
+// Sets `visibility` to the share of the light that reaches the receiver. False if a ray must wait.
 bool find_light(ivec2 pixel, uint index, bool starts) {
     const uint sample_count = uint(min(view.shadow_rays, MAX_SHADOW_RAYS));
     uint first = 0u;

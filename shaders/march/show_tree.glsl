@@ -1,4 +1,4 @@
-// Pictures of the tree: what a voxel's level and place in its brick say, in place of its colour.
+// Pictures of the tree: colours by the level of a voxel, or by its place in its brick.
 #include "interop/march.h"
 
 vec3 level_color(float level) {
@@ -6,20 +6,24 @@ vec3 level_color(float level) {
     return 0.5 + 0.5 * cos(LEVEL_HUE * level + phase);
 }
 
-int first_level = 0;  // of the cube that descents start from
+int first_level = 0;  // tree level of the cube that descents start from
 
-// The tree level whose bricks have voxels of that size; mips lie between two levels.
+// The tree level whose bricks have voxels of the sample's size; mips lie between two levels.
 float level_of(Sample s) {
     const int shift = int(round(log2(s.side) / log2(float(CELL_BASE))));
     return float(first_level) + float(ROOT_SHIFT - M_SHIFT - shift) / float(N_SHIFT);
 }
 
-// Is the sample near where the surface leaves its brick? A side that the surface runs along does not count:
-// it would be marked all over.
+// An axis whose part in the normal is at least this share of the greatest part: the surface runs along the
+// brick's sides across that axis.
+#define ALONG_SIDE 0.98
+
+// Whether the sample is near a side of its brick through which the surface leaves the brick. A side that the
+// surface runs along does not count, or the surface would be marked all over.
 bool near_brick_side(Sample s, vec3 normal) {
     const int last = MIP_M(s.mip) - 1;
     const vec3 across = abs(normal);
-    const bvec3 along = greaterThanEqual(across, vec3(0.98 * max(across.x, max(across.y, across.z))));
+    const bvec3 along = greaterThanEqual(across, vec3(ALONG_SIDE * max(across.x, max(across.y, across.z))));
     const bvec3 near = bvec3(any(equal(ivec2(s.voxel.x), ivec2(0, last))),
                              any(equal(ivec2(s.voxel.y), ivec2(0, last))),
                              any(equal(ivec2(s.voxel.z), ivec2(0, last))));

@@ -1,39 +1,41 @@
-// Through the empty cells of a brick, by its masks. Which block of voxels is empty: -1 when block c is not,
-// else log2 of an empty aligned cell's side, in blocks.
+// Skips the empty cells of a brick, by its masks.
+
+// Block c of a brick: -1 if it is not empty, else log2 of the side, in blocks, of an empty aligned cell
+// around it.
 int empty_block_shift(int slot, uvec2 summary, ivec3 c) {
-#if BLOCKS_A_SIDE == 4
+#if BLOCKS_PER_SIDE == 4
     return empty_shift_4(summary, c);
-#elif BLOCKS_A_SIDE == 2
+#elif BLOCKS_PER_SIDE == 2
     return empty_shift_2(summary.x, c);
 #else
-    const int block = c.x + BLOCKS_A_SIDE * (c.y + BLOCKS_A_SIDE * c.z);
+    const int block = c.x + BLOCKS_PER_SIDE * (c.y + BLOCKS_PER_SIDE * c.z);
     const uvec2 word = texelFetch(brick_masks, slot * MASK_WORDS + block / 64).xy;
     return ((block % 64 < 32 ? word.x : word.y) >> (block % 32) & 1u) != 0u ? -1 : 0;
 #endif
 }
 
 #define SKIM_OCCUPIED 0  // the ray's voxel is occupied
-#define SKIM_LEFT 1      // the ray left the tile, or the mips of it that it sees
+#define SKIM_LEFT 1      // the ray left the tile, or now sees other mips of it
 #define SKIM_ENDED 2     // the ray is done
 
-// Skips the empty cells of a brick.
+// Moves the ray over the empty cells of a brick to an occupied voxel.
 int skim(inout Ray ray, Place place, inout int turns) {
-    const int own_shift = own_shift_of(place);
+    const int brick_voxel_shift = brick_voxel_shift_of(place);
 #if BLENDED
     const int mip = place.mip + 1;
 #else
     const int mip = 0;
 #endif
-    const int blocks = MIP_BLOCKS_A_SIDE(mip);
+    const int blocks = MIP_BLOCKS_PER_SIDE(mip);
     const ivec3 tile = cell_of(ray.voxel, place.tile_shift);
     const int first_mask = place.slot * MASK_WORDS + first_mask_of(mip);
     // A straight line crosses at most 3 M - 2 cells of a brick.
     for (int cell = 0; cell < 3 * BRICK_M; ++cell) {
         ++turns;
-        ivec3 b = place_in(ray.voxel, own_shift, M_SHIFT);
+        ivec3 b = place_in(ray.voxel, brick_voxel_shift, M_SHIFT);
         ivec3 c = cell_of(b, BLOCK_SHIFT);
         int empty = empty_block_shift(place.slot, place.summary, c);
-        int shift = own_shift + BLOCK_SHIFT + empty;
+        int shift = brick_voxel_shift + BLOCK_SHIFT + empty;
         if (empty < 0) {
 #if BLENDED
             b = cell_of(b, mip);
@@ -42,12 +44,12 @@ int skim(inout Ray ray, Place place, inout int turns) {
             const uvec2 mask = texelFetch(brick_masks, first_mask + c.x + blocks * (c.y + blocks * c.z)).xy;
             empty = empty_voxel_shift(mask, b - cell_low(b, BLOCK_SHIFT));
             if (empty < 0) return SKIM_OCCUPIED;
-            shift = min(own_shift + mip + empty, own_shift + M_SHIFT);
+            shift = min(brick_voxel_shift + mip + empty, brick_voxel_shift + M_SHIFT);
         }
         if (!step_over(ray, shift)) return SKIM_ENDED;
         if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) return SKIM_LEFT;
 #if BLENDED
-        if (needs_coarser(ray, place)) return SKIM_LEFT;  // what is empty here may not be so there
+        if (needs_coarser(ray, place)) return SKIM_LEFT;  // other mips may be occupied here
 #endif
     }
     return SKIM_LEFT;

@@ -1,6 +1,5 @@
-// One workgroup is a block of pixels. Of the tiles that its rays left it keeps the first few different ones:
-// those that were missed, then, where there is room, bricks that were used (Crassin et al. 2008, section
-// 5.3).
+// One workgroup is a block of pixels. It keeps the first few different reports of the block's rays: tiles
+// that were missed and then, while there is room, bricks that were used (Crassin et al. 2008, section 5.3).
 #include "interop/tile_query.h"
 
 #define BLOCK_PIXELS (TILE_BLOCK_SIDE * TILE_BLOCK_SIDE)
@@ -10,10 +9,12 @@ layout(local_size_x = TILE_BLOCK_SIDE, local_size_y = TILE_BLOCK_SIDE) in;
 layout(std430, binding = SSBO_TILE_REPORTS) readonly buffer ReportBlock { uint tile_reports[]; };
 layout(std430, binding = SSBO_TILE_BLOCKS) writeonly buffer TileBlock { uint tile_blocks[]; };
 
-uniform ivec2 size;  // pixels of the band
+uniform ivec2 size;  // width and height of the band in pixels
 
 shared uint reports[BLOCK_PIXELS];
-shared uint order[TILE_BLOCK_ENTRIES];  // of the pixels that are chosen; the lowest goes first
+// Keys of the pixels whose reports are kept: the pixel's number, or BLOCK_PIXELS more for a used brick. The
+// lowest key is chosen first.
+shared uint order[TILE_BLOCK_ENTRIES];
 
 uint chosen(uint place) {
     return order[place] == TILE_REPORT_NONE ? TILE_REPORT_NONE : reports[order[place] % uint(BLOCK_PIXELS)];

@@ -1,13 +1,13 @@
-// A descent begins at the lowest node that holds both the ray's voxel and that of the descent before: the DDA
-// with a mini-stack of Crassin 2007, section 3.4.3. The stack is a short one (Horn et al. 2007) of the four
-// lowest nodes, in registers, because arrays with an index live in memory; a ray that climbs further begins
-// at the root.
+// A descent begins at the lowest node that holds both the ray's voxel and the voxel of the descent before:
+// the DDA with a mini-stack of Crassin 2007, section 3.4.3. It is a short stack (Horn et al. 2007) of the
+// four lowest nodes, in registers, because drivers keep indexed arrays in memory. A ray that climbs further
+// begins at the root.
 uint trail_0;  // entry of the lowest node whose children the descent looked at
 uint trail_1;  // its parent, and so on
 uint trail_2;
 uint trail_3;
 int trail_count;
-int trail_shift;  // of the lowest one's tile
+int trail_shift;  // log2 of the side of the lowest node's tile
 ivec3 trail_voxel;
 
 void forget_trail() {
@@ -17,7 +17,7 @@ void forget_trail() {
     trail_voxel = ivec3(0);
 }
 
-// Takes the node where the descent begins off the stack. @return the shift of its tile.
+// Takes the node where the descent begins off the stack. @return log2 of the side of its tile.
 int resume(Ray ray, out uint entry, out uvec4 node) {
     int up = 0;
     up += same_cell(ray.voxel, trail_voxel, trail_shift) ? 0 : 1;
@@ -25,7 +25,7 @@ int resume(Ray ray, out uint entry, out uvec4 node) {
     up += same_cell(ray.voxel, trail_voxel, trail_shift + 2 * N_SHIFT) ? 0 : 1;
     up += same_cell(ray.voxel, trail_voxel, trail_shift + 3 * N_SHIFT) ? 0 : 1;
 #if PROGRESSIVE
-    if (stand_in) up = 4;  // what stands in is looked for along the whole way down
+    if (stand_in) up = 4;  // an ancestor that stands in may be anywhere on the way down
 #endif
     const bool restarts = up >= trail_count;
     const bool two = up >= 2;
@@ -34,7 +34,7 @@ int resume(Ray ray, out uint entry, out uvec4 node) {
     entry = restarts ? 0u : entry;
     const int shift = restarts ? ROOT_SHIFT : trail_shift + up * N_SHIFT;
     trail_count = restarts ? 0 : trail_count - up - 1;
-    // One more than `up` are taken off.
+    // `up` + 1 nodes are taken off.
     const uint next = one ? trail_2 : trail_1;
     const uint second = one ? trail_3 : trail_2;
     trail_0 = two ? (one ? 0u : trail_3) : next;
@@ -44,7 +44,7 @@ int resume(Ray ray, out uint entry, out uvec4 node) {
     return shift;
 }
 
-// The descent looks at the children of this node.
+// Pushes a node whose children the descent looks at.
 void leave_trail(Ray ray, uint entry, uvec4 node, int tile_shift) {
     trail_3 = trail_2;
     trail_2 = trail_1;

@@ -1,10 +1,10 @@
-// Cells of the tree and of its bricks, and what a node says of them.
+// Cells of the tree and of its bricks, and the fields of a node.
 // Needs the defines of TreeShape::defines(): N = 3 goes with M = 27 and 81, N = 2, 4 and 8 with powers of
 // two.
 #include "interop/pool.h"
 #include "march/cells.glsl"
 
-// A block is the cube of voxels that one word of a brick's masks tells of (BLOCK_SIDE).
+// A block is the cube of BLOCK_SIDE^3 voxels whose bits are one word of a brick's masks.
 #if CELL_BASE == 3
 #define BLOCK_SHIFT 1
 #else
@@ -14,35 +14,36 @@
 #define ROOT_SHIFT (M_SHIFT + N_SHIFT * MAX_LEVEL)
 #define ROOT_SIDE cell_side(ROOT_SHIFT)
 
-// Rays go through windows of 2^3 cubes from which descents start (windows.glsl), or there is one cube, the
-// root.
+// Side of the cube that rays march. With windows, it consists of 2^3 cubes from which descents start
+// (windows.glsl); else it is the root.
 #if WINDOWS
 #define MARCHED_SIDE (2 * ROOT_SIDE)
 #else
 #define MARCHED_SIDE ROOT_SIDE
 #endif
 
-// A 4^3 mask, x fastest: -1 when cell c is occupied, else log2 of the side of an empty aligned cell around
-// it.
+// Cell c of a 4^3 mask, x fastest: -1 if it is occupied, else log2 of the side of an empty aligned cell
+// around it.
 int empty_shift_4(uvec2 mask, ivec3 c) {
     const uint word = (c.z & 2) == 0 ? mask.x : mask.y;
     if ((word >> (c.x + 4 * c.y + 16 * (c.z & 1)) & 1u) != 0u) return -1;
     return (word >> ((c.x & 2) + 4 * (c.y & 2)) & 0x00330033u) == 0u ? 1 : 0;
 }
 
-// A 2^3 mask likewise.
+// Cell c of a 2^3 mask: -1 if it is occupied, else 0.
 int empty_shift_2(uint mask, ivec3 c) { return (mask >> (c.x + 2 * c.y + 4 * c.z) & 1u) != 0u ? -1 : 0; }
 
-// A 3^3 mask likewise.
+// Cell c of a 3^3 mask: -1 if it is occupied, else 0.
 int empty_shift_3(uint mask, ivec3 c) { return (mask >> (c.x + 3 * c.y + 9 * c.z) & 1u) != 0u ? -1 : 0; }
 
-// --- a node, as fetched (NodeEntry) ---
+// --- fields of a node, as fetched (NodeEntry) ---
 
-// Child c: -1 when it may not be empty, else the shift of the side of an empty aligned cell around it, in
-// children.
+// Child c of a node: -1 if it may be occupied, else log2 of the side, in children, of an empty aligned cell
+// around it.
 int empty_child_shift(uvec4 node, ivec3 c) {
 #if TREE_N == 8
-    // The mask has 64 bits, one for each group of 2^3 children. A child alone is told empty by its own entry.
+    // The mask has 64 bits, one per group of 2^3 children. The entry of a child marks it if it alone is
+    // empty.
     const int groups = empty_shift_4(node.xy, c >> 1);
     return groups < 0 ? -1 : groups + 1;
 #elif TREE_N == 4
@@ -56,16 +57,16 @@ int empty_child_shift(uvec4 node, ivec3 c) {
 bool has_no_child(uvec4 node) { return (node.x | node.y) == 0u; }
 bool has_children(uvec4 node) { return node.z != 0u; }
 uint child_entry(uvec4 node, ivec3 c) { return node.z + uint(c.x + TREE_N * (c.y + TREE_N * c.z)); }
-// Slot of its brick; -1: none.
+// Slot of the node's brick; -1: no brick.
 int brick_slot(uvec4 node) { return int(node.w & NODE_SLOT) - 1; }
-// One value is all that the tile holds at its own level, and it needs no brick; is_empty: and that value is
-// 0.
+// Whether the tile holds one value at its level, and needs no brick; is_empty: whether that value is 0.
 bool is_constant(uvec4 node) { return (node.w & NODE_CONSTANT) != 0u; }
 bool is_empty(uvec4 node) { return (node.w & NODE_EMPTY) != 0u; }
-// Nothing finer adds to the tile: rays that ask for more take what it holds itself.
+// Whether finer levels add nothing to the tile: rays whose cones ask for finer levels take the tile's voxels.
 bool is_final(uvec4 node) { return (node.w & NODE_FINAL) != 0u; }
 
-// A word of a brick's masks likewise: voxel c of a block.
+// Voxel c of a block, whose bits are a word of a brick's masks: -1 if it is occupied, else log2 of the side
+// of an empty aligned cell around it.
 int empty_voxel_shift(uvec2 mask, ivec3 c) {
 #if CELL_BASE == 3
     return empty_shift_3(mask.x, c);

@@ -1,16 +1,20 @@
-// Which way faces what a ray sees of a voxel's surface.
+// The normal of the part of a voxel's surface that a ray sees.
 //
-// Of a voxel's two normals (pool/brick_normals.glsl) those count that face the viewer, by how much of the
-// picture they cover: what turns its back is hidden behind them. Where none faces the viewer, a sheet is seen
-// from its back; or the surface is seen edge on at a silhouette, and its mean looks away a little because it
-// bends away in the voxel.
+// Those of a voxel's two normals (pool/brick_normals.glsl) count that face the viewer, weighted by the part
+// of the picture that their surface covers: surfaces that face away are hidden behind. If neither normal
+// faces the viewer, the voxel holds a sheet that is seen from its back; or the surface is seen edge on at a
+// silhouette, and its mean normal looks away a little because the surface bends away within the voxel.
 #include "interop/march.h"
 #include "pool/brick_normals.glsl"
 
+#define LEAST_SEEN 0.01  // of Faces::seen: with less, no side faces the viewer
+#define LEAST_SIZE 1e-3  // of Faces::all: with less, the normals cancel out
+
 struct Faces {
-    vec3 seen;  // normals that face the viewer, each times the part of the picture that it covers
-    vec3 all;
-    float spread;  // of 1 - cosine between the two normals of a texel
+    // Sum of the normals that face the viewer, each times the part of the picture that it covers.
+    vec3 seen;
+    vec3 all;      // sum of all normals
+    float spread;  // sum of 1 - cosine between the two normals of each texel
 };
 
 void add_faces(inout Faces faces, vec4 texel, float weight, vec3 direction) {
@@ -34,15 +38,16 @@ Faces filtered_faces(Corners c, vec3 direction) {
 
 vec3 visible_normal(Faces faces, vec3 direction) {
     const float seen = length(faces.seen);
-    if (seen > 0.01) return faces.seen / seen;
+    if (seen > LEAST_SEEN) return faces.seen / seen;
     const float size = length(faces.all);
-    if (size < 1e-3) return -direction;
+    if (size < LEAST_SIZE) return -direction;
     const vec3 normal = faces.all / size;
     const float away = dot(normal, direction);
 #if BLENDED
-    const float bend = SILHOUETTE_BEND;  // two mips must not turn to opposite sides while their shares change
+    // Two mips must not turn to opposite sides while their shares change.
+    const float bend = SILHOUETTE_BEND;
 #else
-    // So far are the two from each other, and the outermost ones about as far from the mean.
+    // The distance between the two unit normals; the outermost normals are about as far from the mean.
     const float bend = clamp(sqrt(max(2.0 * faces.spread / size, 0.0)), VOXEL_SILHOUETTE_BEND, SILHOUETTE_BEND);
 #endif
     return away > bend ? -normal : normalize(normal - max(away, 0.0) * direction);

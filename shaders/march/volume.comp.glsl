@@ -12,25 +12,30 @@
 
 #include "march/launch.glsl"
 
-// Of a volume, `state` gathers in color.rgb what is seen without the light, in normal what the light adds.
+// For a volume, `state` gathers in color.rgb the colour without the light, and in normal the colour that the
+// light adds.
 
-// Light on a place in the volume.
+// A pixel to which the light adds less than this in every channel sends no shadow ray.
+#define LEAST_DIRECT_LIGHT (1.0 / 1024.0)
+
+// Light at a place in the volume: from everywhere, and from the light.
 struct Lit {
     float sky;
     float direct;
 };
 
-// How steep the density is there decides how far it is lit as a surface, two-sided, and how far as fog.
+// The steeper the density is at the place, the more the place is lit as a two-sided surface, and the less as
+// fog.
 Lit light_at(Ray ray, float t, vec3 gradient) {
     const float steep = length(gradient);
     const float surface = volume.full_gradient > 0.0 ? min(steep / volume.full_gradient, 1.0) : 0.0;
     const vec3 normal = (dot(gradient, ray.direction) < 0.0 ? gradient : -gradient) / max(steep, 1e-6);
     const float facing = max(dot(normal, direction_to_light(ray.origin + ray.direction * t)), 0.0);
     const float ambient = view.ambient;
-    return Lit(ambient * mix(1.0, 0.75 + 0.25 * normal.y, surface), (1.0 - ambient) * mix(1.0, facing, surface));
+    return Lit(ambient * mix(1.0, sky_share(normal), surface), (1.0 - ambient) * mix(1.0, facing, surface));
 }
 
-// A stretch of the ray that absorbs and emits evenly. @return what it weighs in the pixel.
+// Takes a stretch of the ray that absorbs and emits evenly. @return the weight of the stretch in the pixel.
 float gather(vec4 optics, float world_length, Lit lit) {
     const float weight = state.color.a * (1.0 - exp(-optics.a * world_length));
     const vec3 color = optics.rgb / max(optics.a, 1e-30);
@@ -40,9 +45,9 @@ float gather(vec4 optics, float world_length, Lit lit) {
     return weight;
 }
 
-// Where the pixel's shadow ray will start: at the depth behind which less than half of what is seen lies. It
-// passes through voxels evenly, so a surface is not shadowed in steps. Where more than half is let through,
-// the voxel that weighs most.
+// Notes the depth at which the pixel's shadow ray will start: where half of the light of the pixel has
+// passed, which moves evenly through voxels, so that a surface is not shadowed in steps. If more than half
+// passes the whole volume, it is the depth of the voxel that weighs most.
 #define HALF_PASSED 2.0  // weighs more than any voxel
 void note_depth(float t_in, float t_out, float weight) {
     const float after = state.color.a;
@@ -90,13 +95,13 @@ void main() {
     Launch launch;
     if (!find_pixel(launch) || !march_pixel(launch, pixel_ray(launch.pixel))) return;
     if (state.color.a <= OPAQUE_TRANSMITTANCE) {
-        // What little shines through is the volume's own: no background in an opaque thing.
+        // The little that still shines through is given to the volume: an opaque thing shows no background.
         state.color.rgb /= 1.0 - state.color.a;
         state.normal /= 1.0 - state.color.a;
         state.color.a = 0.0;
     }
     const vec3 direct = state.normal;
-    if (view.casts_shadows != 0 && max(direct.x, max(direct.y, direct.z)) > 1.0 / 1024.0) {
+    if (view.casts_shadows != 0 && max(direct.x, max(direct.y, direct.z)) > LEAST_DIRECT_LIGHT) {
         leave_to_shadow_ray(launch.index);
     } else {
         write_volume_pixel(launch.pixel, state, 1.0);

@@ -1,17 +1,18 @@
-// What a ray takes from a voxel of a volume: the integral of a transfer function along its chord.
+// The light that a voxel of a volume emits and absorbs along a ray: the integral of a transfer function along
+// the ray's chord in the voxel.
 //
 // Densities are interpolated trilinearly between the centres of voxels. Along each step of a chord they are
-// taken as linear, and what a linear density emits and absorbs is looked up in a table (pre-integration:
-// Engel, Kraus and Ertl 2001, section 3). Opacity is 1 - exp(-extinction * length), in world units, so it
-// depends on no step.
+// taken as linear, and the emission and absorption of a linear density are looked up in a table
+// (pre-integration: Engel, Kraus and Ertl 2001, section 3). Opacity is 1 - exp(-extinction * length), in
+// world units, so it depends on no step.
 //
-// Needs the define VOLUME_STEPS: steps a voxel's chord.
+// Needs the define VOLUME_STEPS: steps per chord of a voxel.
 #include "interop/volume.h"
 layout(binding = TEXTURE_TRANSFER) uniform sampler2D transfer;
 layout(std140, binding = UBO_VOLUME) uniform VolumeBlock { VolumeView volume; };
 
-// Densities of a voxel and those around it: columns are y, rows x. The brick's border has those outside the
-// brick.
+// Densities of a voxel and its neighbours: columns are y, rows x. Neighbours outside the brick are in its
+// border.
 struct Neighbours {
     mat3 below;  // z - 1
     mat3 level;
@@ -38,12 +39,13 @@ float mixed(Neighbours v, vec3 x, vec3 y, vec3 z) {
 // Weights of the neighbours before, at and behind, for a place in [-0.5, 0.5] from the voxel's centre:
 // trilinear interpolation, whichever side of the centre the place is on.
 vec3 weights(float u) { return vec3(max(-u, 0.0), 1.0 - abs(u), max(u, 0.0)); }
-// Those of the difference between half a voxel behind and half a voxel before.
+// Weights, likewise, of the difference between the densities half a voxel behind and half a voxel before the
+// place.
 vec3 differences(float u) { return vec3(u - 0.5, -2.0 * u, u + 0.5); }
 
 float density_at(Neighbours v, vec3 u) { return mixed(v, weights(u.x), weights(u.y), weights(u.z)); }
 
-// Densities a voxel.
+// Gradient, in densities per voxel.
 vec3 gradient_at(Neighbours v, vec3 u) {
     const vec3 x = weights(u.x);
     const vec3 y = weights(u.y);
@@ -51,7 +53,7 @@ vec3 gradient_at(Neighbours v, vec3 u) {
     return vec3(mixed(v, differences(u.x), y, z), mixed(v, x, differences(u.y), z), mixed(v, x, y, differences(u.z)));
 }
 
-// Mean emission and extinction a world unit, while the density goes from s0 to s1.
+// Mean emission and extinction per world unit, while the density goes from s0 to s1.
 vec4 mean_optics(float s0, float s1) {
     const vec2 place = clamp(vec2(s0, s1), 0.0, 1.0) * float(DENSITY_STEPS - 1);
     const ivec2 low = min(ivec2(place), DENSITY_STEPS - 2);
@@ -60,15 +62,16 @@ vec4 mean_optics(float s0, float s1) {
                mix(texelFetch(transfer, low + ivec2(0, 1), 0), texelFetch(transfer, low + ivec2(1, 1), 0), f.x), f.y);
 }
 
-// A voxel's chord, from `from` to `to` of its middle, in voxels of the finest level.
+// The chord of a ray in a voxel, cut in VOLUME_STEPS steps. Lengths are in voxels of the finest level.
 struct Chord {
-    vec3 middle;     // from the voxel's centre, in voxels of the level
-    vec3 direction;  // in these, for each of the finest
-    float from;
-    float step;
+    // Middle of the chord relative to the voxel's centre, in voxels of the level.
+    vec3 middle;
+    vec3 direction;  // voxels of the level per voxel of the finest level
+    float from;      // start of the chord, relative to its middle
+    float step;      // length of a step
 };
 
-// `ray` has stepped over the voxel (march()).
+// The chord in a voxel that `ray` has stepped over (march()).
 Chord chord_of(Ray ray, Sample s) {
     Chord chord;
     chord.from = s.t - ray.t;
@@ -78,13 +81,13 @@ Chord chord_of(Ray ray, Sample s) {
     return chord;
 }
 
-// Density after so many steps.
+// Density after a number of steps from the start of the chord.
 float density_on(Chord chord, Neighbours v, float steps) {
     return density_at(v, clamp(chord.middle + (chord.from + steps * chord.step) * chord.direction, -0.5, 0.5));
 }
 
-// Mean emission and extinction along a step. The density bends on its way from s0 over s1 to s2: what two
-// straight halves say and what a straight whole says tell where finer halves would lead (Richardson's
+// Mean emission and extinction along a step on which the density goes from s0 over s1 to s2. The results for
+// two straight halves and for one straight whole are extrapolated to ever finer parts (Richardson's
 // extrapolation).
 vec4 step_optics(float s0, float s1, float s2) {
     const vec4 halves = 0.5 * (mean_optics(s0, s1) + mean_optics(s1, s2));

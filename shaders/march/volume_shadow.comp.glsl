@@ -1,5 +1,5 @@
-// One thread is one waiting shadow ray, or a pixel's share of them: from where a primary ray gathered most in
-// a volume, to the light.
+// One thread is the waiting shadow rays of a pixel, one or more: from the depth in a volume that the primary
+// ray noted to the light.
 #define RAYS_WIDEN 0
 #define VISIT_TURNS VOLUME_STEPS
 #include "interop/march.h"
@@ -9,7 +9,7 @@
 #include "march/volume_light.glsl"
 
 vec3 receiver;
-float width;  // of a pixel's cone there
+float width;  // width of the pixel's cone at the receiver
 #include "march/shadow_pass.glsl"
 
 bool visit(inout Ray ray, Sample s) {
@@ -37,7 +37,7 @@ bool visit_constant(Ray entered, ConstantRun run) {
 // A volume lets light through from all sides.
 float weight_of(inout LightSample there) { return 1.0; }
 
-float end_of_occluders(vec3 to_light) { return 1e30; }
+float end_of_occluders(vec3 to_light) { return ENDLESS; }
 
 bool trace_one(LightSample there, bool starts) {
     const Ray ray = make_ray(receiver, there.direction, there.reach, width, 0.0);

@@ -1,18 +1,20 @@
-// Colour and normals of the nearest triangle at each pixel.
+// Writes colour and normals of the nearest triangle at each pixel.
 #include "interop/mesh.h"
 #include "interop/surface.h"
 #include "mesh/mesh_material.glsl"
 
 layout(binding = TEXTURE_MESH_NEAREST) uniform sampler2D mesh_nearest;
-layout(location = 0) out uvec4 surface;  // see mesh_surface.glsl
+layout(location = 0) out uvec4 surface;  // as in mesh_surface.glsl
+
+#define NEAREST_SLACK 1e-6  // relative to the nearest distance
 
 void main() {
     const MeshTriangle triangle = mesh_triangles[gl_PrimitiveID];
     const PixelRay seen = pixel_ray(ivec2(gl_FragCoord.xy));
     const MeshHit hit = hit_of(triangle, seen);
     const float nearest = texelFetch(mesh_nearest, ivec2(gl_FragCoord.xy), 0).r;
-    // Two programs need not round alike.
-    if (hit.t > nearest + 1e-6 * abs(nearest)) discard;
+    // The program that found the nearest distance need not round alike.
+    if (hit.t > nearest + NEAREST_SLACK * abs(nearest)) discard;
     const SurfacePoint point = surface_point(triangle, hit);
     const SurfaceMaterial material = surface_materials[material_number()];
 #if MASKED

@@ -1,4 +1,4 @@
-// The distance of the nearest triangle at each pixel; blending keeps the least.
+// Writes the distance of the triangle at each pixel; blending keeps the least.
 #include "interop/mesh.h"
 #include "mesh/mesh_fragment.glsl"
 #if MASKED

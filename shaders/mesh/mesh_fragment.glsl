@@ -1,6 +1,6 @@
-// Where the ray through a pixel's centre meets the triangle that is drawn there. The rasterizer says which
-// pixels a triangle covers; all else comes from the ray and the triangle's plane, and nothing is
-// interpolated.
+// The point where the ray through a pixel's centre meets the triangle that is drawn there. The rasterizer
+// decides which pixels a triangle covers. The point is computed from the ray and the triangle's plane, and
+// nothing is interpolated.
 #include "interop/march.h"
 #include "interop/mesh.h"
 
@@ -13,11 +13,12 @@ layout(std430, binding = SSBO_MESH_TRIANGLES) restrict readonly buffer MeshTrian
 #include "march/pixel_ray.glsl"
 
 struct MeshHit {
-    float t;        // from the ray's origin
-    vec3 from_eye;  // the moved one
+    float t;        // distance from the ray's origin
+    vec3 from_eye;  // the point, relative to MarchView.eye
 };
 
-// Between the depths of the vertices, whatever rounding makes of a triangle that is seen edge on.
+// The hit is clamped to the depths of the vertices, which rounding may miss for a triangle that is seen edge
+// on.
 MeshHit hit_of(MeshTriangle triangle, PixelRay seen) {
     const vec3 origin = seen.origin - view.eye;
     precise const float along = dot(triangle.normal, seen.direction);

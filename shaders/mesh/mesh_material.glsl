@@ -1,11 +1,11 @@
-// What the surface at a hit looks like: by the code that colours voxels.
+// Colour and alpha mask of the surface at a hit, by the code that colours voxels.
 #include "interop/mesh.h"
 #include "interop/surface.h"
 #include "mesh/mesh_fragment.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_color.glsl"
 
-uniform uint first;  // triangle of the batch, in the chunk
+uniform uint first;  // number in the chunk of the batch's first triangle
 
 uint material_number() { return surface_triangles[first + uint(gl_PrimitiveID)].material; }
 
@@ -17,9 +17,8 @@ SurfacePoint surface_point(MeshTriangle triangle, MeshHit hit) {
                         weights / (weights.x + weights.y + weights.z));
 }
 
-// Whether the alpha mask leaves something there.
+// Whether the alpha mask leaves surface at a point.
 bool is_shown(SurfacePoint point, SurfaceMaterial material) {
     if ((material.flags >> MATERIAL_MASK_BIT & 1u) == 0u) return true;
-    // The weights' sum is rounded, and the cutoff itself passes.
-    return alpha_at(point, material) * 1.00001 >= material.alpha_cutoff;
+    return alpha_at(point, material) * ALPHA_SLACK >= material.alpha_cutoff;
 }

@@ -1,24 +1,26 @@
-// The rasterized mesh at a pixel: x, y: base colour (linear, half floats); z: normal; w: normal of the
-// triangle's plane, turned to the viewer.
+// The rasterized mesh at a pixel. Texels hold x, y: base colour (linear, half floats); z: normal; w: normal
+// of the triangle's plane, turned to the viewer.
 #include "interop/mesh.h"
 #include "voxelize/octahedral.glsl"
 
 layout(binding = TEXTURE_MESH_NEAREST) uniform sampler2D mesh_nearest;
 layout(binding = TEXTURE_MESH_SURFACE) uniform usampler2D mesh_surface;
-uniform int mesh_first_row;     // of the picture, in these textures
-uniform bool voxels_hidden;     // they are not shown, and cast shadows all the same
+uniform int mesh_first_row;     // row of the picture that is row 0 of these textures
+uniform bool voxels_hidden;     // voxels are not shown, but cast shadows
 uniform bool mesh_shadows;      // voxels cast shadows on meshes
-// Voxels whose centres are not so far over the plane are its own (in their sides).
-uniform float mesh_own_height;
+// In sides of a voxel: voxels whose centres lie lower over the mesh are part of its surface
+// (self_shadow.glsl).
+uniform float mesh_self_shadow_height;
 
 struct MeshPixel {
-    float t;      // distance from the ray's origin; MESH_MISS = nothing there
-    vec3 color;
-    vec3 normal;  // 0 = nothing there
+    float t;      // distance from the ray's origin; MESH_MISS = no mesh
+    vec3 color;   // linear base colour
+    vec3 normal;  // interpolated normal; 0 = no mesh
+    // Normal of the triangle's plane, turned to the viewer; 0 = no mesh.
     vec3 plane;
 };
 
-// `pixel` in the band.
+// `pixel` counts from the band's first.
 MeshPixel mesh_pixel(ivec2 pixel) {
     const ivec2 place = pixel + ivec2(0, view.first_row - mesh_first_row);
     const uvec4 surface = texelFetch(mesh_surface, place, 0);

@@ -1,4 +1,4 @@
-// One thread is one triangle of a batch: its plane and its coordinates as this view sees them.
+// One thread is one triangle of a batch: it computes the triangle's plane and coordinates in this view.
 #include "interop/mesh.h"
 #include "interop/threads.h"
 #include "mesh/mesh_view.glsl"
@@ -11,8 +11,8 @@ layout(std430, binding = SSBO_MESH_TRIANGLES) restrict writeonly buffer MeshTria
     MeshTriangle mesh_triangles[];
 };
 
-uniform uint first;  // of the batch, in the chunk
-uniform uint count;
+uniform uint first;  // number in the chunk of the batch's first triangle
+uniform uint count;  // triangles of the batch
 
 void main() {
     const uint i = thread_index();

@@ -1,4 +1,4 @@
-// A vertex of a mesh, where pixel_ray() sees it. Rows go downwards, so fronts are clockwise.
+// Puts a vertex of a mesh where pixel_ray() sees it. Rows go downwards, so front faces are clockwise.
 #include "interop/surface.h"
 #include "mesh/mesh_view.glsl"
 
@@ -9,7 +9,7 @@ invariant gl_Position;
 void main() {
     const dvec3 p = from_eye(position);
     const double w = dot(mesh_view.along, p) + mesh_view.skipped;
-    // Clipping at -w <= z is clipping at w >= nearest. Nothing else is made of z: fragments know their
+    // Clipping at -w <= z is clipping at w >= nearest. z has no other use, because fragments compute their
     // distance.
     const double z = w - 2.0lf * mesh_view.nearest;
     gl_Position = vec4(dvec4(dot(mesh_view.across, p), dot(mesh_view.down, p), z, w));

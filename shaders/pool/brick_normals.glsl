@@ -1,8 +1,8 @@
-// What a texel of brick_normal (10 + 10 + 10 + 2 bits) holds: two unit normals of the voxel's surface, by the
-// octahedral map (Cigolle et al. 2014), and the second one's share, at most a half.
-//     bits 0 to 17   the first: 9 + 9, from 1 on; 0: there is none
-//     bits 18 to 29  the second: 6 + 6
-//     bits 30 to 31  its share, in sixths
+// A texel of brick_normal (10 + 10 + 10 + 2 bits): two unit normals of the voxel's surface, by the octahedral
+// map (Cigolle et al. 2014), and the share of the second one, at most a half.
+//     bits 0 to 17   first normal: 9 + 9 bits, values from 1 on; 0: no normal
+//     bits 18 to 29  second normal: 6 + 6 bits
+//     bits 30 to 31  share of the second normal, in sixths
 struct Normals {
     vec3 first;
     vec3 second;
@@ -41,10 +41,10 @@ Normals unpack_normals(vec4 texel) {
     return n;
 }
 
-// Of the voxel's whole surface; short where its sides look different ways, and 0 where there is none.
+// Mean normal of the voxel's whole surface: short if its sides face different ways, 0 if there is none.
 vec3 mean_normal(vec4 texel) {
     const Normals n = unpack_normals(texel);
     return has_normal(texel) ? mix(n.first, n.second, n.share) : vec3(0.0);
 }
-// A mean that is shorter comes of opposite sides that cancel out, and of how exactly the two are kept.
+// A mean normal shorter than this is the rounding error of the normals of opposite sides, which cancel out.
 #define LEAST_MEAN_NORMAL 0.125

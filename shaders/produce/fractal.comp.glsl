@@ -1,4 +1,4 @@
-// One thread is one voxel of a new brick of the fractal, border included.
+// One thread is one voxel of a new brick of the fractal, border included: it computes coverage and normal.
 #include "interop/produce.h"
 #include "interop/threads.h"
 #include "produce/fractal.glsl"
@@ -15,8 +15,8 @@ layout(rgb10_a2, binding = IMAGE_BRICK_NORMAL) writeonly uniform image3D brick_n
 
 // A voxel at most one tile away.
 struct Voxel {
-    ivec3 tile;    // [0, 2]; 1 is the brick's own
-    ivec3 digits;  // of its place in there
+    ivec3 tile;    // tile of the voxel, [0, 2]; 1 is the brick's tile
+    ivec3 digits;  // digits_of() the voxel's place in its tile
 };
 
 Voxel voxel_at(ivec3 place) {
@@ -24,13 +24,13 @@ Voxel voxel_at(ivec3 place) {
     return Voxel(tile, digits_of(place + BRICK_M - tile * BRICK_M));
 }
 
-// Its tile may be empty, and so may its place in it.
+// Whether a voxel is occupied: its tile must not be empty, and its place in the tile must be in the set.
 bool occupied(uint neighbours, Voxel voxel) {
     const int number = voxel.tile.x + 3 * (voxel.tile.y + 3 * voxel.tile.z);
     return (neighbours >> number & 1u) != 0u && in_set(voxel.digits);
 }
 
-// Of three in a row along the diagonal, each coordinate from the one that its offset tells.
+// Takes each coordinate from `before`, `here` or `after`, for an offset of -1, 0 or 1.
 ivec3 pick(ivec3 offset, ivec3 before, ivec3 here, ivec3 after) {
     return mix(mix(before, after, equal(offset, ivec3(1))), here, equal(offset, ivec3(0)));
 }
@@ -43,9 +43,9 @@ void main() {
     const ivec3 place = ivec3(v % SIDE, v / SIDE % SIDE, v / (SIDE * SIDE));
     const uint neighbours = tiles[tile].neighbours;
 
-    // Any projection of an occupied voxel of the fractal along an axis is full, at any depth: a whole face is
-    // covered. One of the sponge is not, but its voxels are taken for solid at each level (Crassin et al.
-    // 2008, section 7).
+    // The projection of an occupied voxel of the fractal along an axis is full at any depth, so its coverage
+    // is 1. That of the sponge is not, but voxels of the sponge are taken for solid at each level (Crassin et
+    // al. 2008, section 7).
     const Voxel here = voxel_at(place - 1);
     const float covered = occupied(neighbours, here) ? 1.0 : 0.0;
     const Voxel before = voxel_at(place - 2);

@@ -6,10 +6,10 @@ layout(std430, binding = SSBO_BRICK_TILES) readonly buffer TileBlock { FractalTi
 
 uniform uint tile_count;
 
-// What in_set() asks of a place in a tile, each coordinate by itself.
+// digits_of() prepares a place in a tile for in_set(), each coordinate by itself.
 #if TREE_N == 3
-// Bit i: is its digit i a 1, so that a cube of 27 on the way down lies in the middle of this axis? Of two
-// axes none may.
+// Bit i: whether digit i of the coordinate, in base 3, is 1: then a cube of 27 on the way down lies in the
+// middle along this axis. In the sponge no cube lies in the middle along two axes.
 ivec3 digits_of(ivec3 place) {
     ivec3 ones = ivec3(0);
     int bit = 1;

@@ -1,5 +1,5 @@
-// One thread is one word of a new brick's masks. A tile that has a brick is occupied, so they are the same in
-// all.
+// One thread is one word of a new brick's masks. Only occupied tiles have bricks, so the masks are the same
+// in all bricks.
 #include "interop/produce.h"
 #include "interop/threads.h"
 #include "produce/fractal.glsl"
@@ -23,9 +23,9 @@ void main() {
         bool full;
         if (is_summary) {
             const int of = 64 * word + bit;
-            full = of < BLOCKS && in_set(digits_of(place_of(of, BLOCKS_A_SIDE)));
+            full = of < BLOCKS && in_set(digits_of(place_of(of, BLOCKS_PER_SIDE)));
         } else {
-            full = in_set(digits_of(BLOCK_SIDE * place_of(block, BLOCKS_A_SIDE) + place_of(bit, BLOCK_SIDE)));
+            full = in_set(digits_of(BLOCK_SIDE * place_of(block, BLOCKS_PER_SIDE) + place_of(bit, BLOCK_SIDE)));
         }
         if (!full) continue;
         if (bit < 32) mask.x |= 1u << bit;

@@ -1,6 +1,6 @@
-// One thread is one block of voxels of a mip of a new brick: it packs their occupancy into the 64-bit mask
-// that rays skip by. One dispatch a mip, finest first: a voxel counts when a finer one in it does, which the
-// alpha mask's samples alone would not always say.
+// One thread is one block of voxels of a mip of a new brick: it packs their occupancy into the 64-bit mask by
+// which rays skip empty cells. There is one dispatch per mip, the finest first, because a voxel is occupied
+// if a finer voxel in it is; the samples of an alpha mask in the coarse voxel alone might miss that.
 #include "interop/produce.h"
 #include "interop/threads.h"
 #include "produce/scratch.glsl"
@@ -15,9 +15,9 @@ uniform uint tile_count;
 uniform int mip;
 
 #if HAS_MASK && BRICK_MIPS > 0
-// Is one of the 2^3 voxels of the next finer mip in voxel v occupied?
+// Whether one of the 2^3 voxels of the next finer mip in voxel v is occupied.
 bool any_finer(uint slot, ivec3 v) {
-    const int blocks = MIP_BLOCKS_A_SIDE(mip - 1);
+    const int blocks = MIP_BLOCKS_PER_SIDE(mip - 1);
     const ivec3 c = 2 * v >> 2;
     const uint word =
         slot * uint(MASK_WORDS) + uint(first_mask_of(mip - 1) + c.x + blocks * (c.y + blocks * c.z));
@@ -33,9 +33,9 @@ void main() {
     if (i >= tile_count * blocks) return;
     const uint tile = i / blocks;
     const int block = int(i % blocks);
-    const int blocks_a_side = MIP_BLOCKS_A_SIDE(mip);
-    const ivec3 low = BLOCK_SIDE * ivec3(block % blocks_a_side, block / blocks_a_side % blocks_a_side,
-                                         block / (blocks_a_side * blocks_a_side));
+    const int blocks_per_side = MIP_BLOCKS_PER_SIDE(mip);
+    const ivec3 low = BLOCK_SIDE * ivec3(block % blocks_per_side, block / blocks_per_side % blocks_per_side,
+                                         block / (blocks_per_side * blocks_per_side));
     const int side = min(BLOCK_SIDE, MIP_M(mip));
     const uint slot = uint(tiles[tile].slot);
     uvec2 mask = uvec2(0u);

@@ -1,5 +1,5 @@
-// One thread is one voxel of a mip of a new brick, border included: it turns what was gathered into the
-// pool's texels, and leaves the scratch empty for the next batch.
+// One thread is one voxel of a mip of a new brick, border included: it turns the gathered sums into the
+// pool's texels, and clears them for the next batch.
 #include "interop/produce.h"
 #include "interop/threads.h"
 #include "produce/scratch.glsl"
@@ -17,8 +17,9 @@ layout(rgb10_a2, binding = IMAGE_BRICK_NORMAL) writeonly uniform image3D brick_n
 
 uniform uint tile_count;
 
-// The share of the voxel's face that the surface covers, seen along the axis where it covers most: what a ray
-// through the voxel meets. A sheet covers all of it, however thin; a wire, as much as it is wide.
+// The share of the voxel's face that the surface covers, seen along the axis along which it covers most: the
+// part that a ray through the voxel meets. A sheet covers the whole face, however thin it is; a wire covers
+// as much as it is wide.
 float coverage(uvec2 mask) {
     const uint along_z = (mask.x | mask.x >> 16 | mask.y | mask.y >> 16) & 0xFFFFu;
     uvec2 y = mask | mask >> 4;
@@ -29,10 +30,12 @@ float coverage(uvec2 mask) {
     return float(most) / 16.0;
 }
 
-// Mean of what was summed from word `first` on.
+// Mean of the three sums from word `first` on.
 vec3 mean_of(uint first, float weight) {
     return vec3(int(scratch[first]), int(scratch[first + 1u]), int(scratch[first + 2u])) / (weight * NORMAL_UNIT);
 }
+
+#define LEAST_NORMAL 1e-3  // a shorter normal is none
 
 vec4 packed_normals(uint sums, float weight) {
     const vec3 mean = mean_of(sums + SUM_NORMAL, weight);
@@ -40,7 +43,7 @@ vec4 packed_normals(uint sums, float weight) {
     const vec3 y = mean_of(sums + SUM_MOMENTS + 2u, weight);  // xz, yy, yz
     const float zz = max(1.0 - x.x - y.y, 0.0);
     const Normals found = two_normals(mean, mat3(x, vec3(x.y, y.y, y.z), vec3(x.z, y.z, zz)));
-    return length(found.first) > 1e-3 ? pack_normals(found) : vec4(0.0);
+    return length(found.first) > LEAST_NORMAL ? pack_normals(found) : vec4(0.0);
 }
 
 void main() {
@@ -72,7 +75,7 @@ void main() {
         for (uint w = 0u; w < uint(SUM_WORDS); ++w) scratch[sums + w] = 0u;
     }
     const ivec3 texel = first_texel(tiles[tile].slot, mip) + place;
-    // Colours are weighted with the coverage, so that a filtered fetch does not mix in what is empty.
+    // Colours are weighted with the coverage, so that a filtered fetch does not mix in empty voxels.
 #if HAS_COLOR
     imageStore(brick_color, texel, vec4(color * covered, covered));
 #else

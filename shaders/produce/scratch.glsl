@@ -1,20 +1,20 @@
-// What the producer gathers for each voxel of the batch, border included, before it is packed into the pool.
-// Sums are whole numbers, so the order of the threads does not show in the brick.
+// The sums that the producer gathers per voxel of the batch, border included, before they are packed into the
+// pool. Sums are whole numbers, so the order of the threads does not affect the brick.
 #include "interop/produce.h"
 #include "pool/brick_levels.glsl"
 
-// Every mip of a brick is gathered like a brick of its own, from the triangles themselves: so it equals the
-// same part of the parent's brick, and of its neighbours' borders, bit for bit.
-#define MIP_SIDE(mip) (MIP_M(mip) + 2)  // voxels a side, border included
+// Every mip of a brick is gathered from the triangles, as if it were a brick by itself. So it equals, bit for
+// bit, the same part of the parent's brick and of its neighbours' borders.
+#define MIP_SIDE(mip) (MIP_M(mip) + 2)  // voxels per side, border included
 #define MIP_VOXELS(mip) CUBE(MIP_SIDE(mip))
 #define VOXELS                                                                                            \
     (MIP_VOXELS(0) + (BRICK_MIPS >= 1 ? MIP_VOXELS(1) : 0) + (BRICK_MIPS >= 2 ? MIP_VOXELS(2) : 0) + \
      (BRICK_MIPS >= 3 ? MIP_VOXELS(3) : 0))
 
-// Two arrays, so that empty voxels, which are most, cost their masks alone.
-//     masks      2 words a voxel, mip after mip: 4^3 finer voxels, bit x + 4 (y + 4 z)
-//     sums       SUM_WORDS a voxel, from word `sums_offset` on
-#define SUM_WEIGHT 0               // finer voxels, counted for each triangle
+// There are two arrays, so that empty voxels, which are the most, cost only their masks.
+//     masks      2 words per voxel, mip after mip: 4^3 finer voxels, bit x + 4 (y + 4 z)
+//     sums       SUM_WORDS per voxel, from word `sums_offset` on
+#define SUM_WEIGHT 0               // number of finer voxels, summed over the triangles
 #define SUM_NORMAL 1               // 3 words: weighted normals, NORMAL_UNIT = 1
 // 5 words: products of the normals' components, xx, xy, xz, yy, yz, weighted alike.
 #define SUM_MOMENTS 4
@@ -26,7 +26,8 @@
 #endif
 #define NORMAL_UNIT 511.0
 #define COLOR_UNIT 1023.0
-// More would overflow the sums: triangles that come later, in the threads' order, are left out.
+// A greater weight would overflow the sums: once it is passed, further triangles, in the order of the
+// threads, are left out.
 #define WEIGHT_LIMIT 1048576u
 
 layout(std430, binding = SSBO_BRICK_TILES) readonly buffer TileBlock { BrickTile tiles[]; };
@@ -34,7 +35,7 @@ layout(std430, binding = SSBO_BRICK_SCRATCH) buffer ScratchBlock { uint scratch[
 
 uniform uint sums_offset;
 
-// The first voxel of a mip among those of its tile.
+// Number of a mip's first voxel among the voxels of its tile.
 int first_voxel_of(int mip) {
     int first = 0;
     for (int k = 0; k < mip; ++k) first += MIP_VOXELS(k);

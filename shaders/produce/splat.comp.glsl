@@ -1,6 +1,6 @@
 // One thread is one pair: a triangle, and some rows of a mip of a tile that it may touch. It finds the brick
-// voxels that the triangle meets, exactly as the voxelizer does, marks their finer voxels and adds its
-// attributes.
+// voxels that the triangle meets, exactly as the voxelizer does, marks their finer voxels, and adds the
+// triangle's attributes to them.
 #include "interop/produce.h"
 #include "interop/surface.h"
 #include "interop/threads.h"
@@ -24,13 +24,14 @@ layout(std430, binding = SSBO_BRICK_PAIRS) readonly buffer PairBlock { BrickPair
 
 uniform uint pair_count;
 
-// The triangle at hand, for attributes: floats suffice here, bits are decided elsewhere.
+// The thread's triangle, for attributes. Floats suffice here, because exact_triangle.glsl decides which
+// voxels are met.
 struct Patch {
     uvec3 vertices;
     SurfaceMaterial material;
     vec3 corner, edge1, edge2;  // lattice units
     float d11, d12, d22;        // scalar products of the edges
-    vec3 normal;                // the triangle's own; 0 when it has no area
+    vec3 normal;                // normal of the triangle; 0 if it has no area
 };
 
 Patch make_patch(uvec3 vertices, SurfaceMaterial material, ivec3 a, ivec3 b, ivec3 c) {
@@ -49,7 +50,8 @@ Patch make_patch(uvec3 vertices, SurfaceMaterial material, ivec3 a, ivec3 b, ive
     return s;
 }
 
-// The point of the triangle under a point of space, brought back to the triangle where it falls beside it.
+// The point of the triangle under a point of space; a point that falls beside the triangle is moved to the
+// triangle.
 SurfacePoint point_under(Patch s, vec3 lattice) {
     const vec3 d = lattice - s.corner;
     const float p1 = dot(d, s.edge1);
@@ -66,9 +68,10 @@ SurfacePoint point_under(Patch s, vec3 lattice) {
     return SurfacePoint(s.vertices, vec3(1.0 - w.x - w.y, w));
 }
 
-// The marks of the triangle in the 4^3 finer voxels of voxel `v`. A finer row in doubt takes what it may
-// hold: coverage is an estimate, and whether the voxel is occupied at all has been decided exactly. Of an
-// alpha-masked triangle count the finer voxels under whose centres it is not cut away.
+// The marks of the triangle in the 4^3 finer voxels of voxel `v`. A finer row in doubt is marked as far as
+// the triangle may reach: coverage is an estimate, and whether the voxel is occupied has been decided
+// exactly. Of an alpha-masked triangle those finer voxels are marked under whose centres the mask leaves
+// surface.
 uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v) {
     uvec2 mask = uvec2(0u);
     for (int i = 0; i < 16; ++i) {
@@ -150,7 +153,7 @@ void main() {
     const ivec2 first_row = ivec2(pairs[i].rows & 0xFFu, pairs[i].rows >> 16 & 0xFFu);
     const ivec2 row_count = ivec2(pairs[i].rows >> 8 & 0xFFu, pairs[i].rows >> 24);
     const BrickTile tile = tiles[tile_index];
-    const int size = tile.size + mip;  // mips are of powers of two alone
+    const int size = tile.size + mip;  // only trees of powers of two have mips
 
     const uvec3 corners = surface_triangles[triangle].vertices;
     const ivec3 a = surface_position(corners.x);

@@ -1,5 +1,5 @@
-// One thread is one summary word of a new brick: in which of 64 blocks a voxel of any mip is occupied. With
-// TELL_EMPTY, where the oracle is not exact, it also tells whether there is anything in the tile at all.
+// One thread is one summary word of a new brick: one bit for each of 64 blocks, whether a voxel of any mip is
+// occupied in it. With FINDS_EMPTY, for oracles that are not exact, it also marks tiles that are not empty.
 #include "interop/produce.h"
 #include "interop/threads.h"
 #include "produce/scratch.glsl"
@@ -10,21 +10,23 @@
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
 
-#if TELL_EMPTY
+#if FINDS_EMPTY
 layout(std430, binding = SSBO_BRICK_FOUND) buffer FoundBlock { uint found[]; };
 #endif
 
 uniform uint tile_count;
 
-// Without alpha masks the finest mip tells of all whose voxels are no larger than a block.
+// Whether a voxel of any mip is occupied in a block. Without alpha masks, the finest mip decides for all mips
+// whose voxels are no larger than a block.
 bool is_full(uint first, uint block) {
     const uvec2 mask = brick_masks[first + uint(SUMMARY_WORDS) + block];
     bool full = (mask.x | mask.y) != 0u;
 #if BRICK_MIPS > 2 || HAS_MASK && BRICK_MIPS > 0
-    // Every mip's voxels lie in occupied ones of the coarsest.
+    // Occupied voxels of every mip lie in occupied voxels of the coarsest mip.
     const int b = int(block);
-    const ivec3 place = ivec3(b % BLOCKS_A_SIDE, b / BLOCKS_A_SIDE % BLOCKS_A_SIDE, b / (BLOCKS_A_SIDE * BLOCKS_A_SIDE));
-    const int blocks = MIP_BLOCKS_A_SIDE(BRICK_MIPS);
+    const ivec3 place = ivec3(b % BLOCKS_PER_SIDE, b / BLOCKS_PER_SIDE % BLOCKS_PER_SIDE,
+                              b / (BLOCKS_PER_SIDE * BLOCKS_PER_SIDE));
+    const int blocks = MIP_BLOCKS_PER_SIDE(BRICK_MIPS);
     const ivec3 low = 4 * place >> BRICK_MIPS;
     const ivec3 high = 4 * place + 3 >> BRICK_MIPS;
     for (int z = low.z; z <= high.z; ++z) {
@@ -53,7 +55,7 @@ void main() {
         else summary.y |= full << (bit - 32u);
     }
     brick_masks[first + word] = summary;
-#if TELL_EMPTY
+#if FINDS_EMPTY
     if ((summary.x | summary.y) != 0u) atomicOr(found[i / uint(SUMMARY_WORDS)], 1u);
 #endif
 }

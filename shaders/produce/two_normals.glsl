@@ -1,11 +1,12 @@
-// The two unit normals that stand for all those in a voxel: they have the same mean, and lie on the line
-// through it along which the normals spread most (the first principal component). So the two faces at an
-// edge, or the two sides of something thin, are told apart, where their mean faces neither way.
+// Two unit normals that stand for all normals in a voxel. They have the same mean, and lie on the line
+// through it along which the normals spread most (the first principal component). So a voxel keeps the two
+// faces at an edge, or the two sides of something thin, apart, though their mean faces neither way.
 #include "pool/brick_normals.glsl"
 
-// Normals that spread less (cosine of half the angle between the two is about 0.993) are one.
+// Normals that spread less than this are taken for one (cosine of half the angle between the two about
+// 0.993).
 #define LEAST_SPREAD 0.12
-#define SPREAD_TURNS 8
+#define SPREAD_TURNS 8  // of the power iteration
 
 // The unit eigenvector of the largest eigenvalue, by power iteration.
 vec3 main_direction(mat3 covariance) {

@@ -1,4 +1,5 @@
-// What a batch of micro-patches hides, added to the batches before (Atty et al. 2005, appendix A).
+// Adds the shares of the light that a batch of micro-patches hides to those of the batches before (Atty et
+// al. 2005, appendix A).
 #include "interop/shadow_map.h"
 
 layout(binding = TEXTURE_SHADOW_HIDDEN) uniform sampler2D batch;

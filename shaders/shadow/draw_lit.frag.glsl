@@ -1,6 +1,7 @@
-// Projects the soft shadow map onto the scene: a receiver's point takes the light that the map says it sees.
-// What lies outside the map's window, or behind the light, is lit.
+// Projects the soft shadow map onto the scene: the share of the light at a receiver's point is that of the
+// map. Points outside the map's window, or behind the light, are lit.
 #include "interop/shadow_map.h"
+#include "common/sky_light.glsl"
 #include "shadow/material.glsl"
 #include "shadow/window.glsl"
 
@@ -9,7 +10,7 @@ layout(binding = TEXTURE_SHADOW_VISIBLE) uniform sampler2D visible_map;
 uniform vec4 receiver_window;
 uniform float near_distance;
 uniform int is_receiver;
-uniform vec3 eye;        // from the mesh's origin, world axes
+uniform vec3 eye;        // relative to the mesh's origin, world axes
 uniform vec3 light;
 uniform vec4 light_color;  // w: ambient
 
@@ -20,9 +21,11 @@ in vec2 surface_texcoord;
 in vec3 light_position;
 
 layout(location = 0) out vec4 color;
-layout(location = 1) out vec2 visible_distance;  // -1 where it is no receiver; distance from the eye
+// Visible share, -1 if this is no receiver; distance from the eye.
+layout(location = 1) out vec2 visible_distance;
 
-// Bilinear among the texels that have a receiver: beside a receiver's edge the others know nothing of it.
+// The visible share, interpolated between those of the four nearest texels that have a receiver: beside a
+// receiver's edge the other texels hold nothing about it.
 float visible_at(vec3 p) {
     const float size = float(textureSize(visible_map, 0).x);
     const vec2 texels = texels_at(receiver_window, p.xy / max(p.z, near_distance), size);
@@ -41,7 +44,7 @@ float visible_at(vec3 p) {
 }
 
 vec3 facing_normal(vec3 to_eye) {
-    // Derivatives stand before any branch: what others of the quad do must not matter.
+    // Derivatives must be taken before any branch, so that all fragments of the quad compute them.
     const vec3 flat_normal = cross(dFdx(surface_position), dFdy(surface_position));
     const vec3 normal = dot(surface_normal, surface_normal) > 0.0 ? surface_normal : flat_normal;
     return normalize(dot(normal, to_eye) < 0.0 ? -normal : normal);
@@ -53,7 +56,7 @@ void main() {
     if (is_hole(surface_texcoord, surface_color.a)) discard;
     const float visible = is_receiver != 0 ? visible_at(light_position) : 1.0;
     const float facing = max(dot(normal, normalize(light - surface_position)), 0.0);
-    const float sky = light_color.w * (0.75 + 0.25 * normal.y);
+    const float sky = light_color.w * sky_share(normal);
     color = vec4(base.rgb * light_color.rgb * (facing * visible * (1.0 - light_color.w) + sky), 1.0);
     visible_distance = vec2(is_receiver != 0 ? visible : -1.0, distance(eye, surface_position));
 }

@@ -1,4 +1,4 @@
-// The scene as a camera sees it, with where its points lie for the light.
+// Projects the scene to a camera's picture, and passes on the position of each vertex in light space.
 #include "interop/shadow_map.h"
 
 layout(location = ATTRIBUTE_SHADOW_POSITION) in vec3 position;
@@ -9,7 +9,7 @@ layout(location = ATTRIBUTE_SHADOW_TEXCOORD) in vec2 texcoord;
 uniform mat4 clip_from_mesh;
 uniform mat4 light_from_mesh;
 
-out vec3 surface_position;  // from the mesh's origin, world axes
+out vec3 surface_position;  // relative to the mesh's origin, world axes
 out vec3 surface_normal;    // 0 = none
 out vec4 surface_color;
 out vec2 surface_texcoord;

@@ -1,6 +1,6 @@
-// gl_FragCoord.w is 1 / z of light space. Blending keeps the greatest in the first target (the closest faces)
-// and the least in the second (the furthest ones): each texel is right in any order of the triangles, with
-// all bits of a float.
+// Writes the inverse depth 1 / z of light space, which is gl_FragCoord.w. Blending keeps the greatest value
+// in the first target (the closest faces) and the least in the second (the furthest faces), so each texel is
+// right in any order of the triangles, with all bits of a float.
 #include "shadow/material.glsl"
 
 layout(location = 0) out float closest;

@@ -1,6 +1,6 @@
-// The soft shadow map: what is left of the light. With two passes, the one that hides more counts (Atty et
-// al. 2005, section 3.5). Reprojections that overlap may sum to more than the whole light. One thread a
-// texel.
+// One thread is one texel of the soft shadow map: the share of the light that is left. With two passes, the
+// one that hides more counts (Atty et al. 2005, section 3.5). Reprojections that overlap may sum to more than
+// the whole light.
 #include "interop/shadow_map.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

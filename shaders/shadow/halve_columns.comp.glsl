@@ -1,4 +1,4 @@
-// One thread is one texel of a coarser level of the pyramid: the OR of those of its 2 x 2 finer columns
+// One thread is one texel of a coarser level of the pyramid: the OR of the texels of its 2 x 2 finer columns
 // (Forest et al. 2009, section 2.3, Figure 4(a)). Columns keep all their bits.
 #include "interop/columns.h"
 #include "interop/threads.h"
@@ -7,10 +7,10 @@
 #define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
-// From level 1 on.
+// Texels of the levels from level 1 on.
 layout(std430, binding = SSBO_COLUMNS) restrict writeonly buffer Coarse { uvec4 coarse[]; };
 
-uniform int level;  // that is built
+uniform int level;  // the level that is built
 
 void main() {
     const int thread = int(thread_index());

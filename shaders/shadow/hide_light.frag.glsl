@@ -3,9 +3,10 @@
 #include "interop/shadow_map.h"
 
 layout(binding = TEXTURE_SHADOW_RECEIVERS) uniform sampler2D receivers;
-uniform vec4 tangents_from_pixel;  // scale, offset: tangents over the light's width and height
+// Scale and offset to tangents over the light's width and height.
+uniform vec4 tangents_from_pixel;
 
-flat in vec4 patch_edges;  // likewise: low.xy, high.xy
+flat in vec4 patch_edges;  // tangents over the light's width and height: low.xy, high.xy
 flat in float patch_inverse_depth;
 
 layout(location = 0) out float hidden;

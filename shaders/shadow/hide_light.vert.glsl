@@ -1,5 +1,5 @@
-// The penumbra extents, as quads on the soft shadow map: one instance a micro-patch, four vertices of a
-// strip.
+// Draws penumbra extents as quads on the soft shadow map: one instance per micro-patch, a strip of four
+// vertices.
 #include "interop/shadow_map.h"
 #include "shadow/window.glsl"
 

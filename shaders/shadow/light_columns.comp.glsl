@@ -1,6 +1,6 @@
-// One thread is one pixel of a rasterized mesh: rays from there to samples of the light, through the
-// xy-reduced pyramid (Forest et al. 2009, section 3.1). What many rays leave undone goes on in the next pass,
-// between two rays.
+// One thread is one pixel of a rasterized mesh: it sends rays from the mesh to samples of the light, through
+// the xy-reduced pyramid (Forest et al. 2009, section 3.1). A thread with many rays may pause between two of
+// them, and goes on in the next pass.
 #include "interop/columns.h"
 #include "interop/march.h"
 #include "interop/threads.h"
@@ -13,7 +13,7 @@ layout(std430, binding = SSBO_COLUMN_COUNTS) buffer CountBlock { uint paused; };
 #define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 #include "shadow/trace_columns.glsl"
-#include "march/own_surface.glsl"
+#include "march/self_shadow.glsl"
 #include "march/shade.glsl"
 #include "march/shadow_rays.glsl"
 
@@ -22,25 +22,25 @@ uniform bool first_pass;
 #define ALL_RAYS 0xFFFFFFFFu  // ShadowSum.ray: the pixel is done
 
 bool visit_voxel(ivec3 voxel, float t) {
-    return is_own(vec3(voxel) + 0.5 - receiver, t, own_height, own_reach);
+    return is_receiver_voxel(vec3(voxel) + 0.5 - receiver, t, self_shadow_height, self_shadow_reach);
 }
 
-// Between two rays a pixel may pause; a ray alone takes few turns.
+// A pixel may pause between two rays; a single ray takes few turns.
 bool pauses_before_ray() {
     if (shadow_turns > TURN_BUDGET) return true;
     ++shadow_turns;
     return false;
 }
 
-// Nothing that stands under the receiver's horizon lights it.
+// 0 for samples under the receiver's horizon, which do not light it.
 float weight_of(inout LightSample there) { return dot(receiver_normal, there.direction) > 0.0 ? 1.0 : 0.0; }
 
-float end_of_occluders(vec3 to_light) { return 1e30; }
+float end_of_occluders(vec3 to_light) { return ENDLESS; }
 
 bool trace_one(LightSample there, bool starts) {
     look_to_light(there.direction, 1.0);
     Ray ray = make_ray(receiver, there.direction, there.reach, 0.0, 0.0);
-    ray.t = own_end(1.0);
+    ray.t = self_shadow_end(1.0);
     visibility = trace_columns(ray, shadow_turns) ? 0.0 : 1.0;
     return true;
 }
@@ -56,12 +56,12 @@ void main() {
     if (mesh_needs_shadow_ray(mesh, seen, 1.0)) {
         receiver = mesh_point(mesh, seen);
         receiver_normal = mesh.plane;
-        own_height = mesh_own_height;
+        self_shadow_height = mesh_self_shadow_height;
         if (!find_light(pixel, index, first_pass)) {
             atomicAdd(paused, 1u);
             return;
         }
     }
     shadow_sums[index].ray = ALL_RAYS;
-    write_pixel(pixel, new_ray_state(), visibility, mesh, visibility);  // no voxel is shown
+    write_pixel(pixel, new_ray_state(), visibility, mesh, visibility);  // no voxels are shown
 }

@@ -1,7 +1,7 @@
-// Micro-patches (Atty et al. 2005, sections 3.2 and 3.3): each texel of the occluder map that holds an
-// occluder becomes one, with the penumbra extent on the receiver map that it may darken. One thread a row of
-// the map. The first pass counts, the second writes, so that the list is in the order of the texels, whatever
-// order the threads run in: sums of floats depend on theirs.
+// Lists micro-patches (Atty et al. 2005, sections 3.2 and 3.3): each texel of the occluder map that holds an
+// occluder becomes a micro-patch, with the penumbra extent on the receiver map that it may darken. One thread
+// is one row of the map. The first pass counts, the second writes, so that the list has the order of the
+// texels in whatever order the threads run: sums of floats depend on the order of the patches.
 #include "interop/shadow_map.h"
 #include "shadow/window.glsl"
 
@@ -19,15 +19,15 @@ bool is_occluder(float w) {
     return w > 0.0 && w < SHADOW_NONE;
 }
 
-// Texels of the receiver map, first and past the last, where a receiver no further than inverse depth
-// `furthest` could see the patch before the light.
+// The first texel of the receiver map, and the one past the last, where a receiver that is no further than
+// inverse depth `furthest` could see the patch before the light.
 ivec4 texels_before(vec4 edges, float w, float furthest) {
     if (w <= furthest) return ivec4(0);
     const vec2 reach = light_half * (w - furthest);
     const float size = float(receiver_size);
     const vec2 low = texels_at(receiver_window, edges.xy - reach, size) - 0.5 - SHADOW_EXTENT_SLACK;
     const vec2 high = texels_at(receiver_window, edges.zw + reach, size) - 0.5 + SHADOW_EXTENT_SLACK;
-    // Clamped as floats: what lies far outside does not fit an int.
+    // Clamped as floats, because numbers far outside do not fit an int.
     return ivec4(clamp(ceil(low), 0.0, size), clamp(floor(high) + 1.0, 0.0, size));
 }
 
@@ -46,8 +46,9 @@ float furthest_in(ivec4 extent) {
                    texelFetch(furthest_receivers, ivec2(high.x, low.y), level).x));
 }
 
-// Atty et al. take one depth for the virtual plane of the map. The furthest receiver's is the one that leaves
-// nothing out; the furthest within that extent leaves nothing out either, and is often much nearer.
+// Atty et al. take one depth for the virtual plane of the map. The depth of the furthest receiver leaves no
+// receiver out. Nor does the depth of the furthest receiver within the extent that results, which is often
+// much nearer.
 ivec4 penumbra_extent(vec4 edges, float w) {
     const int top = textureQueryLevels(furthest_receivers) - 1;
     ivec4 extent = texels_before(edges, w, texelFetch(furthest_receivers, ivec2(0), top).x);

@@ -1,6 +1,6 @@
-// The pyramid of the furthest receivers: a texel of a level holds the least inverse depth of its four of the
-// finer level. The base is the receiver map itself, on a square whose side is a power of two; what has no
-// receiver is SHADOW_NONE. One thread a texel.
+// One thread is one texel of a level of the pyramid of the furthest receivers: it holds the least inverse
+// depth of four texels of the finer level. The base is the receiver map, on a square whose side is a power of
+// two; a texel without a receiver is SHADOW_NONE.
 #include "interop/shadow_map.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,20 +1,21 @@
 // A ray through the xy-reduced pyramid (Forest et al. 2009, section 3.1.1, after Revelles et al. 2000). The
 // includer supplies visit_voxel().
 //
-// A column of some level is empty for a ray when none of its bits is set between the voxels where the ray
-// enters and leaves it (their adaptive mask, Figure 10(b)): then the ray steps over it, and goes on with the
-// largest column that begins there. Otherwise it goes down a level, and in a column of voxels the bits that
-// are set are the voxels that it meets. With COLUMN_MASK_MIP_LEVEL a node is a cube, as in Figure 10(a).
+// A column of some level is empty for a ray if none of its bits is set between the voxels where the ray
+// enters and leaves it (the adaptive mask of Figure 10(b)): then the ray steps over the column, and goes on
+// with the largest column that begins there. Otherwise the ray goes down a level; in a column of voxels, the
+// bits that are set are the voxels that the ray meets. With COLUMN_MASK_MIP_LEVEL a node is a cube, as in
+// Figure 10(a).
 //
-// Which voxels a ray crosses, and in which order, is told by the times at which it crosses their planes, as
-// floats; of equal ones x comes first, then y, then z. So it does not depend on the columns by which it is
-// found, and every step moves one coordinate by at least one.
+// The times at which a ray crosses planes, as floats, decide which voxels it crosses and in which order; of
+// equal times, that of x comes first, then y, then z. So the result does not depend on the columns by which
+// it is found, and every step moves one coordinate by at least one.
 //
 // Needs the defines COLUMN_LEVELS and COLUMN_MASK.
 #include "interop/columns.h"
 
-// Where a ray begins: on a surface, where larger columns are not empty. From the root on, as Forest et al.
-// begin, the same voxels are found later.
+// The level at which a ray begins: it begins on a surface, where larger columns are not empty. From the root,
+// where Forest et al. begin, the same voxels are found later.
 #define COLUMN_START_LEVEL 2
 #include "shadow/columns.glsl"
 
@@ -24,23 +25,23 @@
 #include "march/cells.glsl"
 #include "march/ray.glsl"
 
-// An occupied voxel that the ray crosses, and the distance of the middle of its way through it; false stops
-// the ray.
+// Takes an occupied voxel that the ray crosses, and the distance of the middle of the ray's way through it;
+// false ends the ray.
 bool visit_voxel(ivec3 voxel, float t);
 
-// When the ray crosses these planes, one an axis; never those of an inert axis.
+// The times at which the ray crosses these planes, one per axis; ENDLESS for an inert axis.
 vec3 crossing_times(Ray ray, ivec3 planes) {
     precise vec3 t = (vec3(planes) - ray.origin) * ray.inverse;
-    return mix(t, vec3(1e30), ray.inert);
+    return mix(t, vec3(ENDLESS), ray.inert);
 }
 
-// The voxel where the ray is once it has crossed all planes before time t, and of those at t the axes in
-// `tied`. It lies between ray.voxel and `last`.
+// The voxel where the ray is once it has crossed all planes before time t, and the planes at time t of the
+// axes in `tied`. It lies between ray.voxel and `last`.
 ivec3 voxel_at(Ray ray, float t, bvec3 tied, ivec3 last) {
     const ivec3 low = min(ray.voxel, last);
     const ivec3 high = max(ray.voxel, last);
     const ivec3 guess = clamp(ivec3(floor(ray.origin + ray.direction * t)), low, high);
-    // Rounding may have put it on the wrong side of a plane.
+    // Rounding may have put the guess on the wrong side of a plane.
     const vec3 t_in = crossing_times(ray, guess + 1 - ray.positive);
     const vec3 t_out = crossing_times(ray, guess + ray.positive);
     const vec3 at = vec3(t);
@@ -52,11 +53,12 @@ ivec3 voxel_at(Ray ray, float t, bvec3 tied, ivec3 last) {
 
 // The ray's way through the node of a level around its voxel.
 struct Crossed {
-    int from;        // x of the voxels that are tested, in the order of the ray
-    int to;
-    int exit_axis;   // whose plane it leaves by
-    float t_exit;
-    ivec3 last;      // its last voxel in the node
+    // First x of the voxels that are tested, in the order of the ray.
+    int from;
+    int to;          // last x of the voxels that are tested
+    int exit_axis;   // axis across whose plane the ray leaves
+    float t_exit;    // time at which the ray leaves
+    ivec3 last;      // the ray's last voxel in the node
 };
 
 Crossed cross_node(Ray ray, int level) {
@@ -67,15 +69,14 @@ Crossed cross_node(Ray ray, int level) {
 #endif
     const ivec3 low = (ray.voxel >> shift) << shift;
     const ivec3 high = low + (ivec3(1) << shift) - 1;
-    // Where it leaves by all axes at once.
+    // The corner by which a ray would leave across all axes at once.
     const ivec3 corner = mix(low, high, equal(ray.positive, ivec3(1)));
     const vec3 t = crossing_times(ray, corner + ray.positive);
     Crossed way;
     const float t_plane = min(t.x, min(t.y, t.z));
     way.t_exit = max(t_plane, ray.t);
     way.exit_axis = t.x == t_plane ? 0 : t.y == t_plane ? 1 : 2;
-    // Planes that it crosses at the same time as the one by which it leaves: those of the axes before that
-    // one.
+    // The ray also crosses those planes at the time of its exit that belong to axes before the exit axis.
     const bool ends = way.t_exit >= ray.t_end;
     const bvec3 tied = bvec3(!ends, !ends && way.exit_axis > 1, false);
     way.last = voxel_at(ray, min(way.t_exit, ray.t_end), tied, corner);
@@ -94,8 +95,8 @@ Crossed cross_node(Ray ray, int level) {
     return way;
 }
 
-// Brings the ray to the voxel behind the node, and tells the level of the largest node that begins there.
-// False when it has left the grid or come to its end.
+// Moves the ray to the voxel behind the node, and finds the level of the largest node that begins there.
+// False if the ray has left the grid or come to its end.
 bool leave_node(inout Ray ray, Crossed way, out int level) {
     const ivec3 before = ray.voxel;
     ray.voxel = way.last;
@@ -115,8 +116,9 @@ bool leave_node(inout Ray ray, Crossed way, out int level) {
     return true;
 }
 
-// Takes the voxel at x = `x` of the column of voxels that the ray is in, and brings the ray behind it within
-// the column. `goes_on`: visit_voxel() wants more. False when it was the column's last on the ray's way.
+// Takes the voxel at `x` of the column of voxels that the ray is in, and moves the ray behind it within the
+// column. `goes_on`: the result of visit_voxel(). False if it was the last voxel of the column on the ray's
+// way.
 bool take_voxel(inout Ray ray, Crossed way, int x, out bool goes_on) {
     const vec3 t_in = crossing_times(ray, ivec3(x + 1 - ray.positive.x));
     const vec3 t_out = crossing_times(ray, ivec3(x + ray.positive.x));
@@ -130,11 +132,11 @@ bool take_voxel(inout Ray ray, Crossed way, int x, out bool goes_on) {
     return true;
 }
 
-// From ray.t on; true when visit_voxel() has stopped the ray. `turns` counts what a thread has done in this
-// pass.
+// Traces the ray from ray.t on; true if visit_voxel() has ended it. `turns` counts the turns of the thread in
+// this pass.
 bool trace_columns(inout Ray ray, inout int turns) {
     if (!enter_root(ray)) return false;
-    // Onto the side of each plane that the ray is on at this time.
+    // Moves the voxel to the side of each plane that the ray is on at this time.
     const ivec3 entered = ray.voxel;
     const ivec3 step = 2 * ray.positive - 1;
     ray.voxel = clamp(entered - step, ivec3(0), ivec3(COLUMN_SIDE - 1));

@@ -1,11 +1,11 @@
-// Where a map lies as seen from the light. In light space the light's centre is the origin, its half axes lie
-// along x and y, and it shines along +z. A point is named by its tangents (x, y) / z and its inverse depth w
-// = 1 / z: straight lines stay straight, w is linear across a triangle on the map, and what a micro-patch
-// hides of the light takes one division. A window is the rectangle of tangents that a map covers: low.xy,
-// high.xy in .xyzw.
+// Windows: the place of a map as seen from the light. In light space the light's centre is the origin, its
+// half axes lie along x and y, and it shines along +z. A point is given by its tangents (x, y) / z and its
+// inverse depth w = 1 / z: straight lines stay straight, w is linear across a triangle on the map, and the
+// share of the light that a micro-patch hides takes one division. A window is the rectangle of tangents that
+// a map covers: low.xy, high.xy in .xyzw.
 
-// The same expression for the high edge of a texel and the low edge of the next one: patches meet without gap
-// or overlap.
+// The tangents of a place in texels. The high edge of a texel and the low edge of the next one are computed
+// by the same expression, so that patches meet without gap or overlap.
 vec2 tangents_at(vec4 window, vec2 texel, float size) {
     return mix(window.xy, window.zw, texel / size);
 }

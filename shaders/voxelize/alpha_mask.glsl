@@ -1,23 +1,24 @@
 // Whether the part of a masked triangle inside a closed voxel touches a closed texel square that passes the
 // cutoff: exact on every driver. The definition in few lines is voxelizer/surface/exact_mask.h.
 //
-//     int mask_decide(MaskedTriangle m, ivec3 voxel, int shift)     MASK_SURFACE, MASK_EMPTY, or MASK_UNDECIDED: of what
-//                                                                   is left to voxelizer/surface/exact_mask.h
 //     MaskedTriangle masked_triangle(uint triangle)
-//     bool mask_touches(uint triangle, ivec3 voxel, int shift)      the same in one step, where undecided means yes
+//     int mask_decide(MaskedTriangle m, ivec3 voxel, int shift)
+//         MASK_SURFACE, MASK_EMPTY, or MASK_UNDECIDED: then exact_mask.h must decide
+//     bool mask_touches(uint triangle, ivec3 voxel, int shift)
+//         both functions in one step; an undecided voxel counts as surface
 //
 // The voxel has side 2^shift, is numbered in the root cube, and meets the triangle.
 //
-// A point of the triangle is its three weights. Sides of the voxel, of a texel, and of the triangle are lines
-// that are linear and homogeneous in the weights, with whole coefficients under 2^25.6. The part inside the
-// voxel is a polygon whose corners are each the cross product of two such lines: whole numbers, and exact,
-// because the voxel's and the texel's sides are used only where they cut the triangle: then a component of
-// the product is twice an area that lies in the bounding box, at most 9 * 2^48. The side of a corner is a sum
-// of three products of 77 bits: the corner is cut in two halves, each sum is exact in double, and the two are
-// compared. Clipping: Sutherland and Hodgman 1974, closed: what only touches is left as a segment or a point.
+// A point of the triangle is given by its three weights. The sides of the voxel, of a texel, and of the
+// triangle are lines that are linear and homogeneous in the weights, with whole coefficients under 2^25.6.
+// The triangle's part inside the voxel is a polygon, whose corners are cross products of two such lines. They
+// are whole numbers, and exact: sides of the voxel and of texels are used only if they cut the triangle, and
+// then a component of the product is twice an area that lies in the bounding box, at most 9 * 2^48. The side
+// of a line on which a corner lies is the sign of a sum of three products of 77 bits: the corner is split in
+// two halves, the sum for each half is exact in double, and the two sums are compared. Clipping: Sutherland
+// and Hodgman 1974, with closed sides: a part that only touches is left as a segment or a point.
 //
-// Drivers inline every call, so each step is written once, inside loops, and what it works on is private
-// memory.
+// Drivers inline every call. So each step is written once, inside loops, and works on private memory.
 #include "interop/surface.h"
 #include "interop/voxelize.h"
 #include "voxelize/surface.glsl"
@@ -26,10 +27,11 @@
 const double MASK_SPLIT = 67108864.0LF;  // 2^26
 
 struct MaskedTriangle {
-    ivec3 x, y, z;        // of its vertices, on the lattice
-    ivec3 u, v;           // in units of 1 / texel_side texels, whole textures taken off
-    ivec3 alpha;          // 0 to 255
-    ivec2 period;         // the textures taken off
+    ivec3 x, y, z;        // coordinates of the vertices, on the lattice
+    // Texture coordinates in units of 1 / texel_side texels, less `period`.
+    ivec3 u, v;
+    ivec3 alpha;          // vertex alphas, 0 to 255
+    ivec2 period;         // whole textures that were subtracted from u and v
     int texel_side;
     SurfaceMaterial material;
 };
@@ -46,8 +48,7 @@ MaskedTriangle masked_triangle(uint triangle) {
                     attributes[corners.z].color >> 24);
     const vec2 ta = attributes[corners.x].texcoord, tb = attributes[corners.y].texcoord,
                tc = attributes[corners.z].texcoord;
-    // Coordinates are multiples of 1 / TEXCOORD_UNITS, so that differences are exact, and one rounding is
-    // left.
+    // Coordinates are multiples of 1 / TEXCOORD_UNITS. So differences are exact, and there is one rounding.
     const vec2 period = floor(min(min(ta, tb), tc));
     m.period = ivec2(period);
     const dvec2 size = dvec2(max(uvec2(m.material.width, m.material.height), 1u));
@@ -63,20 +64,21 @@ MaskedTriangle masked_triangle(uint triangle) {
     return m;
 }
 
-// Lines: sides of the triangle (0 to 2), of the voxel (3 to 8), of some rows of texels (9 and 10).
+// Numbers of lines: sides of the triangle are 0 to 2, sides of the voxel 3 to 8, sides of a strip of texel
+// rows 9 and 10.
 #define MASK_VOXEL_LINES 3
 #define MASK_ROW_LINES 9
 #define MASK_LINE_COUNT 11
 ivec3 mask_lines[MASK_LINE_COUNT];
 
-// Three polygons, each a list of corners: the two lines that cross there (4 bits each) and the line from
-// there on.
+// Room for three polygons. A polygon is a list of corners: the two lines that cross in the corner, and the
+// line that follows it (4 bits each).
 #define MASK_MAX_CORNERS 11  // three, and one more for each line that cuts
 uint mask_corners[3 * MASK_MAX_CORNERS];
 
 struct MaskPolygon {
     int place;  // 0, 1 or 2
-    int count;  // 0 = empty
+    int count;  // number of corners; 0 = empty
 };
 
 dvec3 mask_corner(uint corner) {
@@ -85,7 +87,7 @@ dvec3 mask_corner(uint corner) {
     return p.x + p.y + p.z < 0.0LF ? -p : p;
 }
 
-// The sign of a line at a corner.
+// The sign of a line's value at a corner.
 int mask_side(ivec3 whole_line, dvec3 corner) {
     const dvec3 line = dvec3(whole_line);
     const dvec3 high = floor(corner / MASK_SPLIT);
@@ -95,7 +97,8 @@ int mask_side(ivec3 whole_line, dvec3 corner) {
     return int(a > b) - int(a < b);
 }
 
-// What a line leaves of a polygon, at another place than `kept`.
+// The part of a polygon on the inner side of a line. It is written to a place that is neither the polygon's
+// nor `kept`.
 MaskPolygon mask_clip(MaskPolygon polygon, int line, int kept) {
     const ivec3 coefficients = mask_lines[line];
     if (all(greaterThanEqual(coefficients, ivec3(0)))) return polygon;
@@ -122,7 +125,7 @@ MaskPolygon mask_clip(MaskPolygon polygon, int line, int kept) {
     return result;
 }
 
-// floor and ceil of a texture coordinate at a corner, in texels.
+// Floor and ceiling of a texture coordinate at a corner, in texels.
 ivec2 mask_texel_at(dvec3 corner, ivec3 coordinate, int texel_side) {
     const double estimate = dot(corner, dvec3(coordinate)) / ((corner.x + corner.y + corner.z) * double(texel_side));
     const int nearest = int(round(estimate));
@@ -130,8 +133,8 @@ ivec2 mask_texel_at(dvec3 corner, ivec3 coordinate, int texel_side) {
     return ivec2(side < 0 ? nearest - 1 : nearest, side > 0 ? nearest + 1 : nearest);
 }
 
-// The texels of the image that a range of texels of the plane falls on along one axis (MATERIAL_WRAP_*): one
-// piece or two; an empty piece has its end before its start.
+// The texels of the image that correspond, along one axis, to a range of texels of the plane
+// (MATERIAL_WRAP_*): one piece or two. An empty piece has its end before its start.
 void mask_pieces(ivec2 range, int period, int size, uint mode, out ivec2 pieces[2]) {
     pieces[1] = ivec2(0, -1);
     if (mode == 2u) {
@@ -139,7 +142,7 @@ void mask_pieces(ivec2 range, int period, int size, uint mode, out ivec2 pieces[
         pieces[0] = clamp(range - start, 0, size - 1);
         return;
     }
-    // Which repeat each end falls in, rounded down: GLSL leaves the division of negative numbers open.
+    // The repeat that each end falls in, rounded down. GLSL does not define the division of negative numbers.
     const ivec2 repeat = ivec2(range.x >= 0 ? range.x / size : -((-1 - range.x) / size) - 1,
                                range.y >= 0 ? range.y / size : -((-1 - range.y) / size) - 1);
     const ivec2 place = range - repeat * size;
@@ -161,7 +164,7 @@ uint mask_count_before(SurfaceMaterial material, int x, int y) {
     return texels[material.passing_offset + uint(y) * (material.width + 1u) + uint(x)];
 }
 
-// How many texels of a rectangle pass: MASK_SURFACE all, MASK_EMPTY none, MASK_UNDECIDED some.
+// Whether all texels of a rectangle pass (MASK_SURFACE), none (MASK_EMPTY), or some (MASK_UNDECIDED).
 int mask_some_pass(MaskedTriangle m, ivec2 columns, ivec2 rows) {
     ivec2 x[2], y[2];
     mask_pieces(columns, m.period.x, int(m.material.width), m.material.flags >> MATERIAL_WRAP_S_SHIFT & 3u, x);
@@ -181,7 +184,7 @@ int mask_some_pass(MaskedTriangle m, ivec2 columns, ivec2 rows) {
     return passing == 0u ? MASK_EMPTY : passing == all ? MASK_SURFACE : MASK_UNDECIDED;
 }
 
-// The lines of a voxel, the lines of the triangle's sides, and the triangle as the first polygon.
+// Sets the lines of the triangle's sides and of the voxel, and the triangle as the first polygon.
 void mask_begin(MaskedTriangle m, ivec3 voxel, int shift) {
     const ivec3 low = voxel << shift;
     const ivec3 high = low + (1 << shift);
@@ -199,7 +202,7 @@ void mask_begin(MaskedTriangle m, ivec3 voxel, int shift) {
     mask_corners[2] = 0u | 1u << 4 | 1u << 8;
 }
 
-// The texels that a polygon touches, as a rectangle around them.
+// A rectangle around the texels that a polygon touches.
 struct MaskRange {
     ivec2 first, last;
 };
@@ -216,10 +219,10 @@ MaskRange mask_range(MaskedTriangle m, MaskPolygon polygon) {
     return range;
 }
 
-// MASK_EMPTY, MASK_SURFACE or MASK_UNDECIDED. First the whole part of the triangle inside the voxel is held
-// against the rectangle of texels around it. While some pass there and some do not, it is cut in strips of
-// 2^level rows, of which those without a texel that passes are skipped; in one row or column a convex part
-// touches all from first to last.
+// MASK_EMPTY, MASK_SURFACE or MASK_UNDECIDED. The first step counts the texels that pass in the rectangle
+// around the triangle's part inside the voxel. While some pass and some do not, the part is cut in strips of
+// 2^level rows, and strips without a texel that passes are skipped. A convex part in one row or column
+// touches all texels from the first to the last.
 int mask_decide(MaskedTriangle m, ivec3 voxel, int shift) {
     if (m.material.width == 0u || m.alpha != ivec3(255)) return MASK_UNDECIDED;
     mask_begin(m, voxel, shift);
@@ -261,7 +264,7 @@ int mask_decide(MaskedTriangle m, ivec3 voxel, int shift) {
     return MASK_UNDECIDED;
 }
 
-// The undecided count as surface.
+// Whether a voxel is surface; if that is undecided, it counts as surface.
 bool mask_touches(uint triangle, ivec3 voxel, int shift) {
     return mask_decide(masked_triangle(triangle), voxel, shift) != MASK_EMPTY;
 }

@@ -1,14 +1,14 @@
-// What an occupied voxel gathers: sums of whole numbers in 64 bits, so that the order of threads does not
-// show. Two words each, low word first; negative ones in two's complement.
+// The sums of an occupied voxel: whole numbers of 64 bits, so that the order of threads does not affect them.
+// A sum has two words, the low word first; negative sums are in two's complement.
 #include "interop/voxelize.h"
 
-#define SUM_WEIGHT 0  // area, 1 = a face of the voxel
+#define SUM_WEIGHT 0  // area, in faces of the voxel
 #define SUM_COLOR 2
 #define SUM_NORMAL 8
 
 layout(std430, binding = SSBO_ATTRIBUTE_SUMS) restrict buffer AttributeSums { uint sums[]; };
 
-// |value| < 2^20. Every step is exact but the last floor.
+// Adds a value, |value| < 2^20, to the sum at word `place`. Every step is exact but the last floor.
 void add_to_sum(uint place, float value) {
     const float magnitude = abs(value) * ATTRIBUTE_HIGH_UNIT;
     const float whole = floor(magnitude);

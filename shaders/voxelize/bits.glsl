@@ -1,4 +1,4 @@
-// The region whose voxels are marked: one bit each, as in voxelizer/bit_grid.h.
+// The region whose voxels are marked, with one bit per voxel as in voxelizer/bit_grid.h.
 #include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_VOXEL_BITS) restrict buffer VoxelBits { uint voxel_bits[]; };
@@ -6,7 +6,7 @@ layout(std430, binding = SSBO_VOXEL_BITS) restrict buffer VoxelBits { uint voxel
 uniform ivec3 region_origin;
 uniform ivec3 region_size;
 
-// Marks the voxels of a row from span.x to span.y; the row lies in the region, the span is cut to it.
+// Marks the voxels of a row from span.x to span.y. The row must lie in the region; the span is cut to it.
 void mark_span(ivec2 row, ivec2 span) {
     const int first = max(span.x - region_origin.x, 0);
     const int last = min(span.y - region_origin.x, region_size.x - 1);
@@ -23,7 +23,8 @@ void mark_span(ivec2 row, ivec2 span) {
     }
 }
 
-// Whether a voxel of the region is marked already; may miss what another thread marks at this moment.
+// Whether a voxel of the region is marked already. It may miss a mark that another thread sets at the same
+// time.
 bool is_marked(ivec3 voxel) {
     const ivec3 place = voxel - region_origin;
     const int row_word = (place.z * region_size.y + place.y) * ((region_size.x + 31) >> 5);

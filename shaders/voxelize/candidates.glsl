@@ -1,9 +1,11 @@
-// Voxels that a masked triangle meets, and whose texels are still to be looked at.
+// Candidates: voxels that a masked triangle meets, and whose texels have not been looked at yet.
 #include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_VOXEL_CANDIDATES) restrict buffer VoxelCandidateBlock {
-    uint candidate_count;  // past VOXEL_CANDIDATES some found no room
+    // Number of candidates; those past VOXEL_CANDIDATES found no room.
+    uint candidate_count;
     uint undecided_count;
     uint padding[2];
-    ivec4 candidates[];    // xyz: voxel; w: triangle, and -1 - triangle once it is left to the CPU
+    // xyz: voxel; w: triangle, or -1 - triangle once the voxel is left to the CPU.
+    ivec4 candidates[];
 };

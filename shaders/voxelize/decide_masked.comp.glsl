@@ -1,4 +1,4 @@
-// A thread is one candidate: it marks the voxel if the mask leaves surface there.
+// One thread is one candidate: it marks the voxel if the mask leaves surface in it.
 #include "interop/voxelize.h"
 #include "voxelize/alpha_mask.glsl"
 #include "voxelize/bits.glsl"

@@ -1,8 +1,8 @@
 // One thread is one vertex of a surface that moves: morph targets, skin, the node's place, and the lattice,
 // as scenes/deform.cpp, scenes/transform.h and Grid::lattice_from_world do, operation by operation, so that
-// positions have the same bits. `precise` keeps the driver from fusing and from changing the order. Sums and
-// products of doubles are the only ones in need: drivers round those alike. Normals take quotients and roots
-// too, and may differ in the last step.
+// positions have the same bits. `precise` keeps the driver from fusing operations and from changing their
+// order. Positions need only sums and products of doubles, which drivers round alike. Normals need quotients
+// and roots too, and may differ in the last step.
 #include "interop/deform.h"
 #include "interop/grid.h"
 #include "interop/surface.h"
@@ -47,7 +47,7 @@ vec3 vector_at(uint number) {
     return vec3(vectors[3u * number], vectors[3u * number + 1u], vectors[3u * number + 2u]);
 }
 
-// The weighted sum of the joints' matrices; the first joint's where all weights are 0.
+// The weighted sum of the joints' matrices; the matrix of the first joint if all weights are 0.
 Affine skin_matrix(DeformItem item, uint vertex) {
     precise Affine sum = Affine(dvec3(0.0), dvec3(0.0), dvec3(0.0), dvec3(0.0));
     const uint first = item.first_influence + vertex * item.set_count;
@@ -83,8 +83,9 @@ vec3 morphed_position(DeformItem item, uint vertex, vec3 rest) {
     return position;
 }
 
-// Positions that their buffer cannot hold are moved to just past what it can: a triangle of such vertices
-// still misses the root cube on the same side, and find_far.comp.glsl sees which do not miss it.
+// A position that the buffer of positions cannot hold is moved to just past the range that it can: a triangle
+// of such vertices still misses the root cube on the same side, and find_far.comp.glsl finds those that do
+// not miss it.
 ivec3 lattice_position(dvec3 world) {
     const dvec3 origin = dvec3(header.origin[0], header.origin[1], header.origin[2]);
     precise dvec3 units = (world - origin) * header.scale;
@@ -118,7 +119,7 @@ vec3 morphed_normal(DeformItem item, uint vertex) {
     return is_deformed ? unit(dvec3(normal)) : normal;
 }
 
-// By the cofactors, which unlike the inverse exist for every matrix.
+// A normal transformed by the matrix of cofactors, which unlike the inverse exists for every matrix.
 vec3 skinned_normal(Affine m, vec3 normal) {
     dvec3 x = cross(m.y, m.z);
     dvec3 y = cross(m.z, m.x);
@@ -134,8 +135,8 @@ uint snorm_16(double value) {
     return uint(scaled < 0.0LF ? -nearest : nearest) & 0xFFFFu;
 }
 
-// Octahedral, as packed_normal in voxelizer/surface/surface.cpp.
-uint packed_normal(dvec3 normal) {
+// A unit normal by the octahedral map, as encode_normal() of voxelizer/surface/surface.cpp.
+uint encode_normal(dvec3 normal) {
     const double sum = abs(normal.x) + abs(normal.y) + abs(normal.z);
     if (!(sum > 0.0LF) || isinf(sum)) return 0u;
     dvec2 e = normal.xy / sum;
@@ -162,7 +163,7 @@ void main() {
         place = affine(item.matrix);
     }
     dvec3 world = transformed(place, dvec3(morphed_position(item, vertex, uintBitsToFloat(at_rest.xyz))));
-    if (is_skinned) world = dvec3(vec3(world));  // a snapshot holds them so
+    if (is_skinned) world = dvec3(vec3(world));  // a snapshot holds positions as floats
     const ivec3 position = lattice_position(world);
     positions[3u * thread] = position.x;
     positions[3u * thread + 1u] = position.y;
@@ -171,13 +172,13 @@ void main() {
     if (item.first_normal == DEFORM_NONE) return;
     const vec3 normal = morphed_normal(item, vertex);
     if (is_skinned) {
-        attributes[thread].normal = packed_normal(dvec3(skinned_normal(place, normal)));
+        attributes[thread].normal = encode_normal(dvec3(skinned_normal(place, normal)));
         return;
     }
     const dvec3 x = column_of(item.matrix + 1u, 0u);
     const dvec3 y = column_of(item.matrix + 1u, 1u);
     const dvec3 z = column_of(item.matrix + 1u, 2u);
     attributes[thread].normal =
-        packed_normal(x * double(normal.x) + y * double(normal.y) + z * double(normal.z));
+        encode_normal(x * double(normal.x) + y * double(normal.y) + z * double(normal.z));
 #endif
 }

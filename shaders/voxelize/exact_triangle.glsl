@@ -5,29 +5,31 @@
 //     t.low, t.high
 //         inclusive box of the voxels that its bounding box touches
 //     ivec2 row_span(ExactTriangle t, ivec2 row)
-//         the voxels of row (y, z) that it touches: an inclusive interval of x, within t.low.x and t.high.x; empty when
+//         the voxels of row (y, z) that it touches: an inclusive interval of x, within t.low.x and t.high.x; empty if
 //         its x > its y. The row must lie within t.low.yz and t.high.yz.
 //
 //     ivec2 filtered_row_span(ExactTriangle t, ivec2 row, out bool in_doubt)
 //     ivec2 exact_row_span(ExactTriangle t, ivec2 row)
-//         its two tiers, for hot loops: where lanes run in lockstep a driver may compute the second for all of them, so
-//         that rows in doubt are better gathered and decided apart (mark_large)
+//         the two tiers of row_span(), for hot loops: a driver whose lanes run in lockstep may compute the second tier
+//         for all lanes, so it is better to gather rows in doubt and decide them apart (mark_large)
 //
 // Voxels are numbered in the whole root cube: voxel i spans [i, i + 1] * 2^shift. Boxes and triangles are
 // closed: contact counts. Segments and points are triangles too.
 //
-// Needs the define ANY_VOXEL_SIDE. Where it is 1, `shift` is instead the voxel's side in lattice units: even,
-// at most 2^24 (trees whose N is no power of two). Not for the functions that step through rows.
+// Needs the define ANY_VOXEL_SIDE. If it is 1, `shift` is instead the voxel's side in lattice units, even and
+// at most 2^24 (for trees whose N is not a power of two), and the functions that step through rows are left
+// out.
 //
-// Separating axes: Akenine-Möller 2001. Each axis that has an x bounds x from one side by a linear function
-// of the row, the others accept or reject the row (Schwarz and Seidel 2010, section 3). A projection of no
-// area is replaced by its longest side, there and back, so that both sides of its axis are tested.
+// Separating axes: Akenine-Möller 2001. Each axis that has an x component bounds x from one side by a linear
+// function of the row; the other axes accept or reject the row (Schwarz and Seidel 2010, section 3). A
+// projection without area is replaced by its longest side, there and back, so that both sides of its axis are
+// tested.
 //
 // Two tiers. The filter works in float, from the corner t.low, in units in which vertices and planes are
 // exact: voxels (lattice units with ANY_VOXEL_SIDE: all planes within the box are even numbers under 2^25). u
-// = 2^-24 is the unit of rounding. Every bound is known to +-error, and where the whole voxels within that
-// error differ, the row is in doubt. Then the exact tier decides in double: each product and sum below is a
-// whole number of at most 2^53 and thus exact, fused or not. Edges are under 2^25.6, distances under 2^26,
+// = 2^-24 is the unit of rounding. Every bound is known to +-error; if the two ends of that range do not give
+// the same voxels, the row is in doubt. Then the exact tier decides in double: each product and sum below is
+// a whole number of at most 2^53 and thus exact, fused or not. Edges are under 2^25.6, distances under 2^26,
 // and a component of the normal is at most 9 * 2^48, because twice the area of a triangle is at most that of
 // its bounding box.
 
@@ -35,11 +37,11 @@ const float FAR_AWAY = 1.0e30;
 const float SIDE_ERROR = 1.9073486328125e-6;    // 2^-19
 const double SPLIT = 67108864.0LF;              // 2^26
 
-// The three sides of a projection with an x, as bounds of x: at rows [r, r + 1] the bound nearest to the
-// triangle's outside is x - slope * (r - row).
+// The three sides of a projection that has an x axis, as bounds of x: at rows [r, r + 1] the bound nearest to
+// the triangle's outside is x - slope * (r - row).
 struct SideBounds {
     vec3 x, row, slope;
-    bvec3 is_lower, is_upper;  // neither: parallel to x, where the bounding box says as much
+    bvec3 is_lower, is_upper;  // neither: parallel to x, where the bounding box bounds as much
 };
 
 struct ExactTriangle {
@@ -52,18 +54,20 @@ struct ExactTriangle {
 #endif
     dvec3 normal;       // (b - a) x (c - a)
 
-    bool filtered;      // no: it is too wide for floats, and every row is in doubt
+    // false: the triangle is too wide for floats, and every row is in doubt.
+    bool filtered;
     // Side * (y, z, 1) >= 0 where a row meets the inside of a side, +-SIDE_ERROR.
     vec3 side_y, side_z, side_offset;
     SideBounds xy, xz;
     float side_bounds_error;
     vec3 plane;         // lowest x of the plane over a row: plane * (y, z, 1)
-    float plane_width;  // highest minus lowest
+    float plane_width;  // highest minus lowest x of the plane over a row
     float plane_error;
-    bool has_plane;     // no: the plane is parallel to x
+    bool has_plane;     // false: the plane is parallel to x
 };
 
-// A voxel's side and its low planes, in lattice units; the voxel that a coordinate lies in.
+// The side and the low planes of a voxel, in lattice units; and the voxel that a point of the lattice lies
+// in.
 #if ANY_VOXEL_SIDE
 int side_of(ExactTriangle t) { return t.side; }
 int plane_of(ExactTriangle t, int voxel) { return voxel * t.side; }
@@ -81,12 +85,12 @@ ivec3 plane_of(ExactTriangle t, ivec3 voxel) { return voxel << t.shift; }
 ivec3 voxel_at(ExactTriangle t, ivec3 place) { return place >> t.shift; }
 #endif
 
-// The filter's units: of a lattice unit, of a voxel; and from them to voxels.
+// A lattice unit and the side of a voxel in the filter's units, and lengths in the filter's units in voxels.
 #if ANY_VOXEL_SIDE
 float lattice_unit(ExactTriangle t) { return 1.0; }
 float voxel_unit(ExactTriangle t) { return float(t.side); }
 vec2 in_voxels(ExactTriangle t, vec2 x) { return x / float(t.side); }
-// A quotient rounds by as much as 5 u more, of values under the reach that the error is taken of.
+// A quotient adds a rounding of up to 5 u, of values under the reach that the error is computed from.
 #define PLANE_ERROR (0.75 * SIDE_ERROR)
 #else
 float lattice_unit(ExactTriangle t) { return 1.0 / float(1 << t.shift); }
@@ -95,8 +99,8 @@ vec2 in_voxels(ExactTriangle t, vec2 x) { return x; }
 #define PLANE_ERROR (0.5 * SIDE_ERROR)
 #endif
 
-// Orders a projected triangle counter-clockwise: (-edge.y, edge.x) then points inwards. Of one without area,
-// the longest side there and back is left.
+// Orders a projected triangle counter-clockwise: (-edge.y, edge.x) then points inwards. A triangle without
+// area is replaced by its longest side, there and back.
 void wind(inout ivec2 a, inout ivec2 b, inout ivec2 c, double twice_area) {
     if (twice_area > 0.0LF) return;
     if (twice_area < 0.0LF) {
@@ -114,11 +118,10 @@ void wind(inout ivec2 a, inout ivec2 b, inout ivec2 c, double twice_area) {
     c = a;
 }
 
-// ---- The filter
-// ----------------------------------------------------------------------------------------------------
+// ---- The filter ----
 
-// Sides of a projection, counter-clockwise: edges a to b, b to c, c to a; one component of all three at a
-// time.
+// The sides of a projection, counter-clockwise: edges a to b, b to c, c to a. Each argument is one component
+// of all three edges.
 SideBounds side_bounds(vec3 x, vec3 row, vec3 next_x, vec3 next_row, float voxel) {
     SideBounds s;
     const vec3 inward_x = row - next_row;
@@ -194,11 +197,11 @@ vec2 bounds_at(SideBounds s, float row) {
     return vec2(max(max(lower.x, lower.y), lower.z), min(min(upper.x, upper.y), upper.z));
 }
 
-// What the rows of one z share.
+// The values that all rows of one z have in common.
 struct RowSlice {
-    vec3 side;     // of side_y, side_z, side_offset: all but y
+    vec3 side;     // side_z * z + side_offset, without the term of y
     vec2 xz;       // bounds of x
-    float plane;   // of `plane`: all but y
+    float plane;   // plane.y * z + plane.z, without the term of y
 };
 
 RowSlice row_slice(ExactTriangle t, int z) {
@@ -207,10 +210,10 @@ RowSlice row_slice(ExactTriangle t, int z) {
 }
 
 #if !ANY_VOXEL_SIDE
-// Whole r, first and last, that may have slope * r + rest >= -SIDE_ERROR for all three sides; of `filtered`
-// triangles.
+// The first and last whole r that may have slope * r + rest >= -SIDE_ERROR for all three sides. For triangles
+// that are `filtered`.
 vec2 rows_inside_sides(vec3 slope, vec3 rest) {
-    // As much again, and more, for the roundings here.
+    // Twice the error, and some slack, allow for the roundings here.
     const vec3 bound = -(rest + 2.0 * SIDE_ERROR) / mix(slope, vec3(1.0), equal(slope, vec3(0.0)));
     const vec3 slack = 0.01 + 1.0e-6 * abs(bound);
     const vec3 low = mix(vec3(-FAR_AWAY), bound - slack, greaterThan(slope, vec3(0.0)));
@@ -218,7 +221,7 @@ vec2 rows_inside_sides(vec3 slope, vec3 rest) {
     return vec2(ceil(max(max(low.x, low.y), low.z)), floor(min(min(high.x, high.y), high.z)));
 }
 
-// The y that rows of a slice may have: first and last. The triangle meets no other.
+// The first and last y of the rows of a slice that the triangle may meet.
 ivec2 rows_of_slice(ExactTriangle t, RowSlice slice) {
     if (!t.filtered) return ivec2(t.low.y, t.high.y);
     const vec2 rows = rows_inside_sides(t.side_y, slice.side);
@@ -227,7 +230,7 @@ ivec2 rows_of_slice(ExactTriangle t, RowSlice slice) {
 }
 #endif
 
-// The span of row (y, z of the slice), or doubt about it.
+// The span of the row at y in a slice; or the row is in doubt.
 ivec2 filtered_row_span(ExactTriangle t, RowSlice slice, int y, out bool in_doubt) {
     const float r = float(y - t.low.y) * voxel_unit(t);
     const vec3 sides = t.side_y * r + slice.side;
@@ -255,8 +258,7 @@ ivec2 filtered_row_span(ExactTriangle t, ivec2 row, out bool in_doubt) {
     return filtered_row_span(t, row_slice(t, row.y), row.x, in_doubt);
 }
 
-// ---- The exact tier
-// ------------------------------------------------------------------------------------------------
+// ---- The exact tier ----
 
 // Whether the row meets the inner side of the edge from p to q, both (y, z).
 bool meets_side(ivec2 p, ivec2 q, ivec2 row_low, int voxel_side) {
@@ -272,7 +274,7 @@ void narrow_by_side(inout ivec2 span, ExactTriangle t, ivec2 p, ivec2 q, int row
     const int innermost = row_low + (inward.y > 0 ? side_of(t) : 0);
     const double slope = double(inward.x);
     const double rest = double(inward.y) * double(innermost - p.y);
-    // The voxel plane nearest to the bound: on which side of it the bound lies is then decided exactly.
+    // Finds the voxel plane nearest to the bound, then decides exactly on which side of it the bound lies.
     const double bound = (double(p.x) - rest / slope) / double(side_of(t));
     const int nearest = int(round(clamp(bound, double(t.low.x), double(t.high.x + 1))));
     const bool inside = slope * double(plane_of(t, nearest) - p.x) + rest >= 0.0LF;
@@ -280,8 +282,9 @@ void narrow_by_side(inout ivec2 span, ExactTriangle t, ivec2 p, ivec2 q, int row
     else span.y = min(span.y, inside ? nearest : nearest - 1);
 }
 
-// Narrows a span of x by the plane. Its terms pass 53 bits: the normal is cut in two, n = high * SPLIT + low,
-// with |high| < 2^25.2 and |low| <= 2^25: three products of either and a distance add up to less than 2^53.
+// Narrows a span of x by the plane. The terms of the plane pass 53 bits, so the normal is split, n = high *
+// SPLIT + low, with |high| < 2^25.2 and |low| <= 2^25. Three products of either half and a distance add up to
+// less than 2^53.
 void narrow_by_plane(inout ivec2 span, ExactTriangle t, ivec2 row_low) {
     if (t.normal.x == 0.0LF) return;
     const dvec3 normal = t.normal.x > 0.0LF ? t.normal : -t.normal;
@@ -289,8 +292,8 @@ void narrow_by_plane(inout ivec2 span, ExactTriangle t, ivec2 row_low) {
     const dvec3 low = normal - high * SPLIT;
     const int side = side_of(t);
     for (int end = 0; end < 2; ++end) {
-        // Lower end: the voxels whose upper corner is not under the plane; upper end: whose lower corner is
-        // not above.
+        // Lower end: the first voxel whose upper corner is not under the plane. Upper end: the last voxel
+        // whose lower corner is not above the plane.
         const bvec2 far_edge = end == 0 ? greaterThan(normal.yz, dvec2(0.0LF)) : lessThan(normal.yz, dvec2(0.0LF));
         const dvec2 d = dvec2(row_low + side * ivec2(far_edge) - t.a.yz);
         const double rest_high = high.y * d.x + high.z * d.y;
@@ -298,7 +301,7 @@ void narrow_by_plane(inout ivec2 span, ExactTriangle t, ivec2 row_low) {
         const double bound = (double(t.a.x) - (rest_high * SPLIT + rest_low) / normal.x) / double(side);
         const int nearest = int(round(clamp(bound, double(t.low.x), double(t.high.x + 1))));
         const double x = double(plane_of(t, nearest) - t.a.x);
-        // Compared, not added: the sum of these two would be rounded.
+        // The two values are compared and not added, because their sum would be rounded.
         const double value_high = (high.x * x + rest_high) * SPLIT;
         const double value_low = -(low.x * x + rest_low);
         if (end == 0) span.x = max(span.x, value_high >= value_low ? nearest - 1 : nearest);
@@ -329,8 +332,7 @@ ivec2 exact_row_span(ExactTriangle t, ivec2 row) {
     return span;
 }
 
-// ---- What callers use
-// ----------------------------------------------------------------------------------------------
+// ---- Functions for callers ----
 
 ExactTriangle exact_triangle(ivec3 a, ivec3 b, ivec3 c, int shift) {
     ExactTriangle t;
@@ -342,7 +344,7 @@ ExactTriangle exact_triangle(ivec3 a, ivec3 b, ivec3 c, int shift) {
 #else
     t.shift = shift;
 #endif
-    // A voxel that ends where the triangle begins is touched too.
+    // A voxel that ends where the triangle begins is touched as well.
     t.low = voxel_at(t, min(min(a, b), c) - 1);
     t.high = voxel_at(t, max(max(a, b), c));
     const dvec3 ab = dvec3(b - a), ac = dvec3(c - a);

@@ -1,4 +1,4 @@
-// Hands a vertex to project.geom.glsl.
+// Passes a vertex on to project.geom.glsl.
 #include "interop/surface.h"
 
 layout(location = ATTRIBUTE_POSITION) in ivec3 position;  // lattice units

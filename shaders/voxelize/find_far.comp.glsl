@@ -1,5 +1,5 @@
-// One thread is one triangle: counts those that reach the root cube from further away than
-// SurfaceChunk::positions can hold. deform.comp.glsl has left such vertices just past that.
+// One thread is one triangle. The pass counts the triangles that reach the root cube from further away than
+// SurfaceChunk::positions can hold; deform.comp.glsl has moved such vertices to just past that range.
 #include "interop/deform.h"
 #include "interop/grid.h"
 #include "voxelize/surface.glsl"

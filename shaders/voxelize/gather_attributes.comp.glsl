@@ -1,10 +1,11 @@
-// A thread is one pair: it clips the triangle to the closed voxel (Sutherland and Hodgman 1974), samples base
-// colour and normal on the piece that is left, and adds them to the voxel's sums, weighted by area.
+// One thread is one pair: it clips the triangle to the closed voxel (Sutherland and Hodgman 1974), samples
+// base colour and normal on the piece that is left, and adds them to the voxel's sums, weighted by area.
 //
-// The piece is found in the triangle's barycentric weights, where each side of the voxel is a line whose
-// values at the three vertices are whole numbers: large triangles lose no accuracy, and those without area
-// still have a piece. It is cut in a fan, and where a texture may vary on it, each triangle of the fan in
-// `rows`^2 equal ones, about as small as a texel: each is sampled at its centroid.
+// The piece is computed in the triangle's barycentric weights, where each side of the voxel is a line whose
+// values at the three vertices are whole numbers. So large triangles lose no accuracy, and triangles without
+// area still have a piece. The piece is cut in a fan of triangles. If a texture may vary on the piece, each
+// triangle of the fan is cut in `rows`^2 equal parts, about as small as a texel. Each part is sampled at its
+// centroid.
 #include "interop/surface.h"
 #include "interop/voxelize.h"
 #include "voxelize/attribute_pairs.glsl"
@@ -19,21 +20,22 @@ uniform ivec3 region_origin;
 uniform int voxel_shift;
 uniform uint count;
 
-// Lattice units: what counts as on a side, so that what only touches the voxel has a piece. Weights are off
-// by 2^-52, and distances to a side are under 2^26.
+// A point within this distance of a side (lattice units) counts as on it, so that a triangle that only
+// touches the voxel has a piece. Weights have an error of 2^-52, and distances to a side are under 2^26.
 const double ON_SIDE = 1.52587890625e-5LF;  // 2^-16
 
 #define MAX_CORNERS 9  // three, and one more for each side that cuts
-dvec2 corners[2 * MAX_CORNERS];  // weights of the second and third vertex; the piece lies in one half
+// Weights of the second and third vertex; the piece lies in one half.
+dvec2 corners[2 * MAX_CORNERS];
 
 struct Piece {
-    int first;  // place in `corners`
+    int first;  // first corner in `corners`
     int count;
 };
 
 int side_of(double value) { return int(value > ON_SIDE) - int(value < -ON_SIDE); }
 
-// `d`: how far inside a side of the voxel the three vertices lie.
+// Clips a piece by a side of the voxel. `d`: distances of the three vertices from the side, positive inside.
 Piece clip(Piece piece, dvec3 d) {
     Piece result = Piece(MAX_CORNERS - piece.first, 0);
     dvec2 corner = corners[piece.first + piece.count - 1];
@@ -42,7 +44,7 @@ Piece clip(Piece piece, dvec3 d) {
         const dvec2 next = corners[piece.first + i];
         const double next_value = d.x + next.x * (d.y - d.x) + next.y * (d.z - d.x);
         const int side = side_of(value), next_side = side_of(next_value);
-        // Past MAX_CORNERS only rounding could lead.
+        // More than MAX_CORNERS corners could only result from rounding.
         if (side * next_side < 0 && result.count < MAX_CORNERS) {
             const dvec2 cut = corner + (value / (value - next_value)) * (next - corner);
             corners[result.first + result.count++] = cut;
@@ -70,12 +72,12 @@ Piece piece_in_voxel(ivec3 a, ivec3 b, ivec3 c, ivec3 voxel) {
     return piece;
 }
 
-// Floats suffice for where a sample lies: on a triangle of 2^25 lattice units they are two units off.
+// Floats suffice for the place of a sample: on a triangle of 2^25 lattice units the error is two units.
 SurfacePoint point_at(uvec3 vertices, vec2 weights) {
     return SurfacePoint(vertices, vec3(1.0 - weights.x - weights.y, weights));
 }
 
-// So many rows of samples that they lie about a texel apart.
+// The number of rows of samples with which samples lie about a texel apart.
 int sample_rows(Piece piece, uvec3 vertices, SurfaceMaterial material) {
     if (material.width == 0u) return 1;
     vec2 low = vec2(1.0e30), high = vec2(-1.0e30);
@@ -88,8 +90,8 @@ int sample_rows(Piece piece, uvec3 vertices, SurfaceMaterial material) {
     return int(clamp(ceil(max(texels_across.x, texels_across.y)), 1.0, float(ATTRIBUTE_SAMPLE_ROWS)));
 }
 
-// The centroid of part `number` of a triangle that is cut in rows^2 parts; rows run along the side from b to
-// c. Row r has r + 1 parts that point like the triangle, and r between them that point the other way.
+// The centroid of part `number` of a triangle that is cut in rows^2 parts. Rows run along the side from b to
+// c. Row r has r + 1 parts that point like the triangle, and between them r parts that point the other way.
 vec2 centroid_of_part(vec2 a, vec2 b, vec2 c, int number, int rows) {
     int row = int(sqrt(float(number)));
     row += int((row + 1) * (row + 1) <= number) - int(row * row > number);
@@ -117,11 +119,14 @@ bool passes(float texel_alpha, float vertex_alpha, SurfaceMaterial material) {
     return uint(round(texel_alpha * 255.0)) * uint(round(vertex_alpha * 255.0 * 256.0)) >= material.alpha_threshold;
 }
 
-// The colour at a sample that is cut away, for a piece that has no other: the voxel is occupied because the
-// piece touches a texel nearby that is not. `weight`: 1, or next to nothing when there is none.
-vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 own_color, out float weight) {
-    weight = 1.0e-6;
-    if (material.width == 0u) return own_color;
+#define NOWHERE_WEIGHT 1.0e-6
+
+// The colour at a sample that the mask cuts away, for a piece that has no other samples: the voxel is
+// occupied because the piece touches a texel nearby that passes. `weight`: 1, or NOWHERE_WEIGHT if no such
+// texel is found.
+vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 sample_color, out float weight) {
+    weight = NOWHERE_WEIGHT;
+    if (material.width == 0u) return sample_color;
     const vec4 vertex_color = vertex_color_at(p);
     const vec2 uv = texcoord_at(p);
     for (int i = 0; i < 9; ++i) {
@@ -131,15 +136,15 @@ vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 own_color, out 
         weight = 1.0;
         return material.base_color.rgb * vertex_color.rgb * linear_from_srgb(texel.rgb);
     }
-    return own_color;
+    return sample_color;
 }
 #endif
 
-// One sample, into `shown` or, where a mask cuts it away, into `hidden`.
-void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, SurfaceMaterial material, vec3 own_normal,
-                  float weight) {
+// Adds one sample to `shown` or, if a mask cuts it away, to `hidden`.
+void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, SurfaceMaterial material,
+                  vec3 triangle_normal, float weight) {
     const vec3 color = color_at(p, material);
-    const vec3 normal = normal_at(p, own_normal);
+    const vec3 normal = normal_at(p, triangle_normal);
 #if HAS_MASK
     if ((material.flags >> MATERIAL_MASK_BIT & 1u) != 0u) {
         const float alpha = material.width != 0u ? nearest_texel(material, texcoord_at(p)).a : 1.0;
@@ -167,7 +172,7 @@ void main() {
 
     const dvec3 cross_product = cross(dvec3(b - a), dvec3(c - a));
     const double twice_area = length(cross_product);
-    const vec3 own_normal = twice_area > 0.0LF ? vec3(cross_product / twice_area) : vec3(0.0);
+    const vec3 triangle_normal = twice_area > 0.0LF ? vec3(cross_product / twice_area) : vec3(0.0);
     const double side = double(1 << voxel_shift);
     const int rows = sample_rows(piece, triangle, material);
     const int parts = rows * rows;
@@ -183,7 +188,7 @@ void main() {
         const float faces = max(float(share * faces_of_triangle), 1.0e-20);
         for (int part = 0; part < parts; ++part) {
             const vec2 middle = centroid_of_part(vec2(first), vec2(p), vec2(q), part, rows);
-            sample_point(shown, hidden, point_at(triangle, middle), material, own_normal, faces);
+            sample_point(shown, hidden, point_at(triangle, middle), material, triangle_normal, faces);
         }
     }
     float weight = max(shown.weight, ATTRIBUTE_LEAST_WEIGHT);

@@ -1,17 +1,17 @@
-// One thread is two words of the coarser level, side by side: each voxel the OR of 2 x 2 x 2 of the finer
-// one, or of 2 x 2 x 1 where all slices are kept (Forest et al. 2009, section 2.3, Figure 4). It reads
-// through a buffer texture, four words at a time where rows allow it: software drivers load from storage
-// buffers lane by lane.
+// One thread is two words of the coarser level, side by side. Each voxel is the OR of 2 x 2 x 2 voxels of the
+// finer level, or of 2 x 2 x 1 if all slices are kept (Forest et al. 2009, section 2.3, Figure 4). The thread
+// reads through a buffer texture, four words at a time if the rows allow it, because software drivers load
+// from storage buffers lane by lane.
 #include "interop/voxelize.h"
 
 #define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
-layout(binding = TEXTURE_HALVE_FINE) uniform usamplerBuffer fine_bits;  // WIDE: four words a texel, or one
+layout(binding = TEXTURE_HALVE_FINE) uniform usamplerBuffer fine_bits;  // with WIDE four words per texel, else one
 layout(std430, binding = SSBO_HALVE_COARSE) restrict writeonly buffer CoarseBits { uint coarse_bits[]; };
 
 uniform ivec3 fine_size;
-uniform ivec3 coarse_size;  // of equal z: all slices are kept
+uniform ivec3 coarse_size;  // if its z is that of fine_size, all slices are kept
 
 // Four words of a row of the finer level.
 uvec4 fine_words(int row, int first) {
@@ -46,8 +46,10 @@ void main() {
     const ivec2 step = ivec2(2, coarse_size.z == fine_size.z ? 1 : 2);
     const ivec2 low = step * ivec2(coarse_row % coarse_size.y, coarse_row / coarse_size.y);
     const ivec2 high = min(low + step - 1, fine_size.yz - 1);
-    const uvec4 words = fine_words(low.y * fine_size.y + low.x, 4 * pair) | fine_words(low.y * fine_size.y + high.x, 4 * pair) |
-                        fine_words(high.y * fine_size.y + low.x, 4 * pair) | fine_words(high.y * fine_size.y + high.x, 4 * pair);
+    const uvec4 words = fine_words(low.y * fine_size.y + low.x, 4 * pair) |
+                        fine_words(low.y * fine_size.y + high.x, 4 * pair) |
+                        fine_words(high.y * fine_size.y + low.x, 4 * pair) |
+                        fine_words(high.y * fine_size.y + high.x, 4 * pair);
     const uvec4 halves = or_of_pairs(words);
     const int place = coarse_row * coarse_words + 2 * pair;
     coarse_bits[place] = halves.x | halves.y << 16;

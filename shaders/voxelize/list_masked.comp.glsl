@@ -1,5 +1,5 @@
-// A thread is one slice of one queued triangle that a mask cuts, of slice_count; it lists the voxels of every
-// slice_count-th row, but those that are marked already.
+// One thread is one of slice_count slices of a queued triangle that a mask cuts. It lists the voxels of every
+// slice_count-th row, except those that are marked already.
 #include "interop/voxelize.h"
 #include "voxelize/bits.glsl"
 #include "voxelize/candidates.glsl"
@@ -13,8 +13,8 @@
 
 uniform int voxel_shift;
 uniform uint queue;
-uniform uint first;        // place in the queue
-uniform uint count;        // of triangles
+uniform uint first;        // place of the first triangle in the queue
+uniform uint count;        // number of triangles
 uniform uint slice_count;
 uniform uvec2 row_range;   // rows of the triangle's bounding box: first, last + 1
 

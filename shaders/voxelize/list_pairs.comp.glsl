@@ -1,8 +1,8 @@
-// Lists which triangles touch which occupied voxels of a part: those whose ranks lie in `part`. A row in
-// doubt is listed as far as the triangle may touch: gather_attributes finds that nothing of it lies in the
-// other voxels.
-// LARGE=0: a thread is one triangle; one with a large box it leaves in the queue.
-// LARGE=1: a thread is one slice of one queued triangle, of slice_count; it lists every slice_count-th row of
+// Lists pairs of a triangle and an occupied voxel that it touches, for the voxels whose ranks lie in `part`.
+// A row in doubt is listed as far as the triangle may touch voxels: gather_attributes finds no piece of the
+// triangle in the others.
+// LARGE=0: one thread is one triangle; a triangle with a large box is put in the queue.
+// LARGE=1: one thread is one of slice_count slices of a queued triangle; it lists every slice_count-th row of
 // row_range.
 #include "interop/voxelize.h"
 #include "voxelize/attribute_pairs.glsl"
@@ -21,10 +21,11 @@ uniform ivec3 region_origin;
 uniform ivec3 region_size;
 uniform int voxel_shift;
 uniform ivec2 part_slices;  // first and last z of the part, in the region
-uniform uvec2 part;         // ranks: first, last + 1
+uniform uvec2 part;         // first rank, and one past the last
 
-uniform uint first;  // triangle, place in the subset, or place in the queue
-uniform uint count;  // of triangles
+// Number of the first triangle, or its place in the subset or in the queue.
+uniform uint first;
+uniform uint count;  // number of triangles
 #if LARGE
 uniform uint slice_count;
 uniform uvec2 row_range;

@@ -1,7 +1,7 @@
-// One thread is one triangle: it marks those of few rows, and leaves the others to mark_large, and those that
-// a mask cuts to list_masked. Rows in doubt are not decided here: lanes run in lockstep, and doubles for one
-// would cost all of them dearly. A triangle with such a row is marked anew by EXACT=1, whose threads take it
-// from the queue.
+// One thread is one triangle: it marks the triangle if that has few rows, and leaves it to mark_large
+// otherwise, or to list_masked if a mask cuts it. Rows in doubt are not decided here, because lanes run in
+// lockstep: doubles for one lane cost all lanes dearly. A triangle with such a row goes into a queue, and is
+// marked anew by the program with EXACT=1.
 #include "interop/surface.h"
 #include "interop/voxelize.h"
 #include "voxelize/bits.glsl"
@@ -19,11 +19,12 @@ uniform uint count;
 
 #if !EXACT
 layout(std430, binding = SSBO_VOXEL_SUBSET) restrict readonly buffer VoxelSubset { uint voxel_subset[]; };
-uniform uint first;  // triangle, or place in the subset
+uniform uint first;  // number of the first triangle, or its place in the subset
 uniform int has_subset;
-uniform int thread_rows;  // of a triangle that threads share, about
+uniform int thread_rows;  // about how many rows of a shared triangle each thread marks
 
-// The class of a triangle that threads share; for twice the rows, because they are shared unevenly.
+// The queue of a triangle that threads share. It is chosen for twice the rows, because rows are shared
+// unevenly.
 uint shared_queue(RowSteps steps) {
     const float threads = 2.0 * float(steps.count) * float(steps.most_rows) / float(thread_rows);
     uint queue = VOXEL_QUEUE_SHARED;
@@ -35,7 +36,7 @@ uint shared_queue(RowSteps steps) {
     return queue;
 }
 
-// Whether the triangle is left to a later pass; `size`: of its bounding box in the region.
+// Puts the triangle in a queue if it is left to a later pass. `size`: size of its bounding box in the region.
 bool enqueue_if_not_small(ExactTriangle t, uint triangle, uint material, ivec3 size) {
     const float rows = float(size.y) * float(size.z);
     if ((surface_materials[material].flags & (1u << MATERIAL_MASK_BIT)) != 0u) {
@@ -48,7 +49,7 @@ bool enqueue_if_not_small(ExactTriangle t, uint triangle, uint material, ivec3 s
     return true;
 }
 
-// First and last y of a slice's rows.
+// First and last y of a slice's rows in the region.
 ivec2 rows_in_region(ExactTriangle t, RowSlice slice, ivec3 low, ivec3 high) {
     const ivec2 rows = rows_of_slice(t, slice);
     return ivec2(max(rows.x, low.y), min(rows.y, high.y));
@@ -78,8 +79,8 @@ void main() {
         for (int y = low.y; y <= high.y; ++y) mark_span(ivec2(y, z), exact_row_span(t, ivec2(y, z)));
     }
 #else
-    // One loop over all rows, not one a slice: lanes run in lockstep, and a slice's longest row count would
-    // be everyone's.
+    // One loop over all rows, not one per slice: lanes run in lockstep, and in nested loops each lane would
+    // wait for the slice with the most rows of any lane.
     bool any_doubt = false;
     int z = low.z;
     RowSlice slice = row_slice(t, z);

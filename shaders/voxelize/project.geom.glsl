@@ -1,6 +1,6 @@
-// One primitive goes to the layer of each direction that looks at it (Forest et al. 2009, section 2.2): the
-// geometry is sent once. All that OpenGL 4.5 promises suffices; project.vert.glsl is the way without a
-// geometry shader.
+// Sends a primitive to the layer of each direction that looks at it (Forest et al. 2009, section 2.2), so
+// that the geometry is drawn once. OpenGL 4.5 suffices for this shader; project.vert.glsl does the same
+// without a geometry shader.
 #include "voxelize/projection.glsl"
 
 #if AXES == 3

@@ -1,11 +1,12 @@
-// The same as project.geom.glsl without a geometry shader, where the driver lets a vertex shader choose the
-// layer and read storage buffers: an instance is a direction, and each vertex fetches the whole primitive.
+// Sends a primitive to the layer of each direction that looks at it, as project.geom.glsl does, but without a
+// geometry shader. The driver must allow vertex shaders to choose the layer and to read storage buffers. An
+// instance is a direction, and each vertex fetches the whole primitive.
 #extension GL_ARB_shader_viewport_layer_array : require
 #include "voxelize/projection.glsl"
 #include "voxelize/raster_lists.glsl"
 #include "voxelize/surface.glsl"
 
-uniform uint kind;  // of the list
+uniform uint kind;  // RASTER_*: the list that is drawn
 
 void main() {
     const int drawn = COVER != 0 ? 3 : CORNERS;

@@ -1,45 +1,50 @@
-// A primitive as one of the three directions sees it, and what a fragment needs to know of it: planes and
-// sides are flat inputs of the fragments, from exact vertices, and nothing is interpolated, so that neither
-// the driver's snapping of vertices to parts of a pixel nor its clipping moves a slice.
+// A primitive as seen from one of the three directions, and the inputs of its fragments. Planes and sides are
+// flat inputs, computed from exact vertices, and nothing is interpolated, so that neither the driver's
+// snapping of vertices to parts of a pixel nor its clipping moves a slice.
 //
-//     CORNERS   of a primitive: 3, 2 or 1
-//     COVER=0   the primitive itself is rasterized, as OpenGL does it
-//     COVER=1   a triangle around it is, and the fragments decide by its sides (Hasselgren et al. 2005)
-//     AXES      which directions look at it: 3 = all, 1 = z alone, 0 = the one that sees it most squarely
+//     CORNERS   corners of a primitive: 3, 2 or 1
+//     COVER=0   OpenGL rasterizes the primitive itself
+//     COVER=1   a triangle around it is rasterized, and fragments decide by its sides (Hasselgren et al. 2005)
+//     AXES      directions that look at it: 3 = all, 1 = z alone, 0 = the one that sees it most squarely
 //
-//     Projection project(ivec3 corners[CORNERS], int axis)   corners on the lattice; axis: the one that is looked along
+//     Projection project(ivec3 corners[CORNERS], int axis)   corners on the lattice; axis of the direction
 //     void put(Projection p, int corner, uint primitive)     writes the outputs of one vertex
 #include "interop/voxelize.h"
 
 #define VARYING out
 #include "voxelize/slice_inputs.glsl"
 
-uniform ivec3 tile_low;         // lattice units
-uniform ivec3 region_end;       // the region's high corner, lattice units from tile_low
+uniform ivec3 tile_low;         // low corner of the tile, lattice units
+uniform ivec3 region_end;       // high corner of the region, lattice units from tile_low
 uniform int voxel_shift;
 uniform int tall;               // the layer of x has y downwards, not z
-// Half the longest side of the tile, voxels: where planes and sides are anchored.
+// Half the longest side of the tile, in voxels: planes and sides are relative to the point with these
+// coordinates.
 uniform float tile_middle;
-// Clip units a voxel: the viewport's side is a power of two, so that scaling is exact.
+// Clip units per voxel: the viewport's side is a power of two, so that scaling is exact.
 uniform float viewport_scale;
-uniform float half_pixel;       // 0.5: fragments touch the primitive; 0: their centres lie in it
+// 0.5: pixels count that touch the primitive; 0: pixels whose centre lies in it.
+uniform float half_pixel;
 
-// Snapping moves a vertex by up to 1/256 of a pixel; a cover keeps clear of that.
+// Distance in pixels by which a cover is enlarged, since snapping moves a vertex by up to 1/256 of a pixel.
 const float COVER_MARGIN = 0.015625;
-// Under about this sine of an angle, an enlarged corner would lie far off.
+// Sine of an angle under which an enlarged corner would lie far off.
 const float ACUTE = 0.2;
 
 struct Projection {
-    vec2 corners[3];     // of what is rasterized, voxels
-    bool visible;
+    // Corners of the triangle, segment or point that is rasterized, voxels.
+    vec2 corners[3];
+    bool visible;        // there is something to rasterize
     vec3 plane;          // depth at (x, y) from the tile's middle: dot(plane, (x, y, 1))
-    vec2 limits;         // of depth
-    vec3 sides[3];       // inside where dot(side, (x, y, 1)) >= 0; |side.x| + |side.y| = 1
-    vec4 box;            // low and high corner, from the tile's middle
-    vec3 weight_b, weight_c;  // of the second and third corner at (x, y): dot(weight, (x, y, 1))
+    vec2 limits;         // least and greatest depth
+    // Inside where dot(side, (x, y, 1)) >= 0; |side.x| + |side.y| = 1.
+    vec3 sides[3];
+    vec4 box;            // low and high corner of the primitive, from the tile's middle
+    // Weights of the second and third corner at (x, y): dot(weight, (x, y, 1)).
+    vec3 weight_b, weight_c;
 };
 
-// The plane that a direction looks at, then depth.
+// A point turned so that x and y span the plane that a direction looks at, and z is the depth.
 ivec3 turned(ivec3 p, int axis) {
     if (axis == 0) return tall != 0 ? p.zyx : p.yzx;
     return axis == 1 ? p.xzy : p;
@@ -60,7 +65,7 @@ int dominant_axis(ivec3 corners[CORNERS]) {
 // A linear function of the plane by its gradient and its value at a point.
 vec3 linear(dvec2 gradient, dvec2 at, double value) {
     const dvec2 from_at = dvec2(tile_middle) - at;
-    // Floats end at 1e38.
+    // Kept within 1e30, because floats end at 1e38.
     return vec3(clamp(dvec3(gradient, value + dot(gradient, from_at)), -1.0e30LF, 1.0e30LF));
 }
 
@@ -86,7 +91,7 @@ void project_plane(inout Projection p, dvec3 a, dvec3 b, dvec3 c) {
     p.sides[2] = side_through(c.xy, a.xy, divisor < 0.0LF);
 }
 #else
-// Depth along a segment, by the coordinate in which it is longer.
+// The depth along a segment, by the coordinate in which the segment is longer.
 void project_segment(inout Projection p, dvec3 a, dvec3 b) {
     const dvec3 d = b - a;
     p.visible = CORNERS == 1 || d.xy != dvec2(0.0LF);
@@ -104,14 +109,14 @@ void project_segment(inout Projection p, dvec3 a, dvec3 b) {
 #endif
 
 #if COVER
-// A right triangle over a rectangle: corner, and its two edges.
+// Covers a rectangle, given by a corner and two edges, by a right triangle.
 void cover_rectangle(inout Projection p, vec2 corner, vec2 u, vec2 v) {
     p.corners[0] = corner;
     p.corners[1] = corner + 2.0 * u;
     p.corners[2] = corner + 2.0 * v;
 }
 
-// Needles, segments and points: the rectangle along the longest side.
+// Covers a needle, a segment or a point by the rectangle along its longest side.
 void cover_needle(inout Projection p, vec2 a, vec2 b, vec2 c, float margin) {
     const vec2 ab = b - a, bc = c - b, ca = a - c;
     vec2 along = dot(ab, ab) >= dot(bc, bc) ? ab : bc;
@@ -127,8 +132,8 @@ void cover_needle(inout Projection p, vec2 a, vec2 b, vec2 c, float margin) {
     cover_rectangle(p, a + low.x * along + low.y * across, (high.x - low.x) * along, (high.y - low.y) * across);
 }
 
-// Where two sides cross, both moved outwards: from the corner between them (Hasselgren et al. 2005, section
-// 2.2).
+// The crossing of two sides that are moved outwards, relative to the corner between them (Hasselgren et al.
+// 2005, section 2.2).
 vec2 moved_corner(vec3 before, vec3 after, float margin) {
     const float sine = before.x * after.y - before.y * after.x;
     return vec2(before.y - after.y, after.x - before.x) * (margin / sine);
@@ -136,13 +141,13 @@ vec2 moved_corner(vec3 before, vec3 after, float margin) {
 
 bool is_acute(vec3 before, vec3 after) { return abs(before.x * after.y - before.y * after.x) < ACUTE; }
 
-// A triangle whose pixels hold all that the primitive touches. What it holds beside them, the fragments throw
-// away.
+// Finds a triangle that covers all pixels that the primitive touches. Fragments mark nothing in the other
+// pixels that it covers.
 void cover(inout Projection p, vec2 a, vec2 b, vec2 c) {
     const float margin = half_pixel + COVER_MARGIN;
     const vec2 low = min(min(a, b), c) - margin, high = max(max(a, b), c) + margin;
     if (any(lessThan(low, vec2(-RASTER_FAR_VOXELS))) || any(greaterThan(high, vec2(2 * RASTER_FAR_VOXELS)))) {
-        // Too wide for the driver's clipping: its box inside the tile.
+        // The primitive is too wide for the driver's clipping: its box inside the tile is drawn.
         const vec2 corner = max(low, vec2(0.0));
         const vec2 size = min(high, vec2(2.0 * tile_middle)) - corner;
         p.visible = p.visible && all(greaterThan(size, vec2(0.0)));
@@ -172,7 +177,7 @@ Projection project(ivec3 corners[CORNERS], int axis) {
 #endif
     const ivec3 low = min(min(a, b), c), high = max(max(a, b), c);
     p.limits = vec2(low.z, high.z) * voxels;
-    // What lies in the region's end, and has no voxel behind it, belongs to its last one.
+    // A primitive in the region's end, with no voxel behind it, belongs to the last voxel.
     if (low.z == high.z && low.z == turned(region_end, axis).z) p.limits -= 0.5;
     p.box = vec4(low.xy, high.xy) * voxels - tile_middle;
 #if COVER
@@ -195,7 +200,7 @@ void put(Projection p, int corner, uint primitive) {
     slice_weight_b = p.weight_b;
     slice_weight_c = p.weight_c;
     slice_primitive = primitive;
-    // Outside the view when there is nothing to see: all corners in one place. Depth clips nothing.
+    // If the primitive is not visible, all corners are at one place outside the view. Depth clips nothing.
     const vec2 place = p.visible ? p.corners[corner] * viewport_scale - 1.0 : vec2(-2.0);
     gl_Position = vec4(place, 0.0, 1.0);
 }

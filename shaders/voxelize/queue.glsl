@@ -1,5 +1,5 @@
-// Triangles that wait for a later pass over the same batch: VOXEL_QUEUE_COUNT counters, then as many queues,
-// each with room for a whole batch, so that none can overflow.
+// Queues of triangles that wait for a later pass over the same batch: VOXEL_QUEUE_COUNT counters, then as
+// many queues, each with room for a whole batch, so that no queue can overflow.
 #include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_VOXEL_QUEUE) restrict buffer VoxelQueue { uint voxel_queue[]; };

@@ -1,14 +1,14 @@
-// The primitives of a batch that may meet a tile, one list a kind (RASTER_*): how many each holds, then the
-// numbers of their vertices, then the numbers of their triangles in the bound chunk.
+// The primitives of a batch that may meet a tile, one list per kind (RASTER_*): the lengths of the lists,
+// then the numbers of the primitives' vertices, then the numbers of their triangles in the bound chunk.
 #include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_RASTER_LISTS) restrict buffer RasterLists { uint raster_lists[]; };
 
-// Vertices of a primitive.
+// Number of vertices of a primitive.
 uint corners_of(uint kind) { return kind == RASTER_SEGMENTS ? 2u : kind == RASTER_POINTS ? 1u : 3u; }
 
-// Where the vertices of a list begin: each list has room for a whole batch. RASTER_KINDS: where all lists
-// end.
+// Place of the first vertex of a list; each list has room for a whole batch. For RASTER_KINDS, the end of all
+// lists of vertices.
 uint first_vertex(uint kind) {
     return RASTER_KINDS + kind * 3u * VOXEL_BATCH_TRIANGLES;
 }

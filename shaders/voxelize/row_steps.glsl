@@ -1,4 +1,4 @@
-// The rows of a large triangle, step by step along the longer of y and z, so that rows which it cannot meet
+// Steps through the rows of a large triangle along the longer of y and z, so that rows which it cannot meet
 // cost nothing.
 #include "voxelize/bits.glsl"
 #include "voxelize/exact_triangle.glsl"
@@ -9,8 +9,8 @@ ivec3 high_in_region(ExactTriangle t) { return min(t.high, region_origin + regio
 struct RowSteps {
     bool along_z;
     ivec2 low, high;  // x: along the steps; y: across; in the region
-    int count;        // of steps
-    int most_rows;    // of a step
+    int count;        // number of steps
+    int most_rows;    // greatest number of rows in a step
 };
 
 RowSteps row_steps(ExactTriangle t, ivec3 low, ivec3 high) {
@@ -20,8 +20,9 @@ RowSteps row_steps(ExactTriangle t, ivec3 low, ivec3 high) {
     steps.low = steps.along_z ? low.zy : low.yz;
     steps.high = steps.along_z ? high.zy : high.yz;
     steps.count = steps.high.x - steps.low.x + 1;
-    // Across, a triangle is never wider than twice its area by its length, and lies beside its longest edge,
-    // which shifts by at most one in one step; the rest is for closed voxels at both ends and for rounding.
+    // Across the steps, a triangle is at most as wide as twice its area over its length. It lies beside its
+    // longest edge, which shifts by at most one row in a step. The rest allows for closed voxels at both ends
+    // and for rounding.
     const float unit = 1.0 / float(1 << t.shift);
     const float twice_area = float(abs(t.normal.x)) * unit * unit;
     const float widest = t.filtered ? twice_area / max(float(max(size.x, size.y)) - 2.0, 1.0) + 6.0 : FAR_AWAY;
@@ -29,7 +30,7 @@ RowSteps row_steps(ExactTriangle t, ivec3 low, ivec3 high) {
     return steps;
 }
 
-// The rows of one step that the triangle may meet, across: first and last.
+// The first and last row of a step, across, that the triangle may meet.
 ivec2 rows_of_step(ExactTriangle t, RowSteps steps, int step) {
     const ivec2 all = ivec2(steps.low.y, steps.high.y);
     if (!t.filtered) return all;

@@ -1,5 +1,5 @@
-// Sets the bits of the slices that a primitive meets in a column of voxels (Forest et al. 2009, section 2.2):
-// the logic operation OR gathers them in the targets, of RASTER_TARGET_SLICES slices each.
+// Sets the bits of the slices that a primitive meets in a column of voxels (Forest et al. 2009, section 2.2).
+// The logic operation OR gathers the bits in targets of RASTER_TARGET_SLICES slices each.
 #define VARYING in
 #include "interop/surface.h"
 #include "interop/voxelize.h"
@@ -14,12 +14,13 @@ layout(location = 0) out uvec4 slices[TARGETS];
 
 uniform float tile_middle;
 uniform float half_pixel;
-uniform float slack;  // voxels: more than the rounding of a plane or a side inside the tile
-uniform uint kind;    // of the list
+// In voxels: more than the rounding of a plane or a side inside the tile.
+uniform float slack;
+uniform uint kind;    // RASTER_*: the list that is drawn
 
 #if COVER
-// Whether the pixel (its centre, where half_pixel is 0) touches the primitive, as far as this direction can
-// tell.
+// Whether the pixel (its centre, if half_pixel is 0) touches the primitive in the projection along this
+// direction.
 bool touches(vec2 place) {
     const vec3 p = vec3(place, 1.0);
     const float nearest = min(min(dot(slice_side_a, p), dot(slice_side_b, p)), dot(slice_side_c, p));
@@ -29,7 +30,7 @@ bool touches(vec2 place) {
 }
 #endif
 
-// First and last slice; empty where the last comes before the first.
+// First and last slice that the primitive meets; empty if the last comes before the first.
 ivec2 slice_range(vec2 place) {
     const float depth = dot(slice_plane, vec3(place, 1.0));
 #if COVER
@@ -37,7 +38,7 @@ ivec2 slice_range(vec2 place) {
         const float reach = half_pixel * (abs(slice_plane.x) + abs(slice_plane.y)) + slack;
         const float low = max(depth - reach, slice_limits.x - slack);
         const float high = min(depth + reach, slice_limits.y + slack);
-        // Voxels are closed: what lies between two slices touches both.
+        // Voxels are closed, so a primitive between two slices touches both.
         return ivec2(clamp(vec2(ceil(low) - 1.0, floor(high)), -1.0, float(TARGETS * RASTER_TARGET_SLICES)));
     }
 #endif
@@ -50,14 +51,14 @@ uvec4 low_bits(ivec4 count) {
     return mix((uvec4(1u) << uvec4(count & 31)) - 1u, uvec4(0xFFFFFFFFu), equal(count, ivec4(32)));
 }
 
-// The part of a range of slices in a target.
+// The bits of a range of slices in a target.
 uvec4 slice_bits(ivec2 range, int target) {
     const ivec4 first_slice = target * RASTER_TARGET_SLICES + ivec4(0, 32, 64, 96);
     const uvec4 before = low_bits(clamp(range.x - first_slice, 0, 32));
     return low_bits(clamp(range.y + 1 - first_slice, 0, 32)) & ~before;
 }
 #else
-// One slice, or none where the range is empty.
+// The bit of one slice in a target; 0 if the range is empty.
 uvec4 slice_bits(ivec2 range, int target) {
     const uint bit = range.x <= range.y ? 1u << uint(range.x & 31) : 0u;
     return mix(uvec4(0u), uvec4(bit), equal(ivec4(range.x >> 5), 4 * target + ivec4(0, 1, 2, 3)));
@@ -65,7 +66,7 @@ uvec4 slice_bits(ivec2 range, int target) {
 #endif
 
 #if MASKED
-// The texel under the pixel's centre, or at the nearest point of the primitive.
+// Whether the alpha mask leaves surface under the pixel's centre, or at the primitive's point nearest to it.
 bool is_shown(vec2 place) {
     const uint triangle = raster_lists[triangle_place(kind, slice_primitive)];
     const SurfaceMaterial material = surface_materials[surface_triangles[triangle].material];
@@ -78,8 +79,7 @@ bool is_shown(vec2 place) {
     const float b = dot(slice_weight_b, vec3(place, 1.0)), c = dot(slice_weight_c, vec3(place, 1.0));
     const vec3 weights = max(vec3(1.0 - b - c, b, c), 0.0);
     point.weights = weights / (weights.x + weights.y + weights.z);
-    // The weights' sum is rounded, and the cutoff itself passes.
-    return alpha_at(point, material) * 1.00001 >= material.alpha_cutoff;
+    return alpha_at(point, material) * ALPHA_SLACK >= material.alpha_cutoff;
 }
 #endif
 
@@ -92,7 +92,7 @@ void main() {
 #if MASKED
     if (!is_shown(place)) range = ivec2(0, -1);
 #endif
-    // Nothing is discarded: a word without bits changes nothing. Depths past the ends of the tile set no bit
-    // either.
+    // Fragments need not be discarded: a word without bits changes nothing. Depths past the ends of the tile
+    // set no bits.
     for (int target = 0; target < TARGETS; ++target) slices[target] = slice_bits(range, target);
 }

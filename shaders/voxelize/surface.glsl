@@ -1,4 +1,4 @@
-// The surface as voxelizer/surface/surface.h uploads it (one chunk is bound at a time).
+// One chunk of the surface, as voxelizer/surface/surface.h uploads it.
 #include "interop/surface.h"
 
 layout(std430, binding = SSBO_SURFACE_POSITIONS) restrict readonly buffer SurfacePositions {
@@ -11,7 +11,7 @@ layout(std430, binding = SSBO_SURFACE_MATERIALS) restrict readonly buffer Surfac
     SurfaceMaterial surface_materials[];
 };
 
-// Lattice units.
+// Position of a vertex, lattice units.
 ivec3 surface_position(uint vertex) {
     return ivec3(surface_positions[3u * vertex], surface_positions[3u * vertex + 1u],
                  surface_positions[3u * vertex + 2u]);

@@ -1,5 +1,5 @@
-// What a surface carries beside its shape (voxelizer/surface/surface.h): an attribute block a vertex, and all
-// texels.
+// The attributes of one chunk of the surface, one block per vertex, and all texels
+// (voxelizer/surface/surface.h).
 #include "interop/surface.h"
 
 layout(std430, binding = SSBO_SURFACE_ATTRIBUTES) restrict readonly buffer AttributeBlock {

@@ -7,7 +7,7 @@ vec3 linear_from_srgb(vec3 c) {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
-// A point on a triangle, by weights of its vertices.
+// A point on a triangle, by the weights of its vertices.
 struct SurfacePoint {
     uvec3 vertices;
     vec3 weights;
@@ -54,6 +54,10 @@ vec3 color_at(SurfacePoint p, SurfaceMaterial material) {
     if (material.width != 0u) color *= linear_from_srgb(nearest_texel(material, texcoord_at(p)).rgb);
     return color;
 }
+
+// What an alpha is multiplied by before it is compared with a cutoff, for the sum of a point's weights is
+// rounded, and an alpha that equals the cutoff passes.
+#define ALPHA_SLACK 1.00001
 
 float alpha_at(SurfacePoint p, SurfaceMaterial material) {
     float alpha = material.base_color.a * vertex_color_at(p).a;

@@ -1,7 +1,7 @@
 // Joins a target of one direction with the bits of the region (Forest et al. 2009, section 2.2, Figure 3).
 //
-// Along x, a channel of a texel is a word of a row: one thread is one texel. Along y and z, one thread takes
-// 32 texels of a row, whose bits in one slice are a word.
+// For the direction x, a channel of a texel is a word of a row, and one thread is one texel. For y and z, one
+// thread is 32 texels of a row, whose bits in one slice are a word.
 #include "voxelize/bits.glsl"
 #include "interop/voxelize.h"
 
@@ -9,17 +9,18 @@
 #include "common/thread.glsl"
 
 layout(binding = TEXTURE_SLICES) uniform usampler2DArray target_slices;
-uniform ivec3 tile_place;  // voxels from the region's low corner; x is a multiple of 32
+// Low corner, in voxels from the region's low corner; x is a multiple of 32.
+uniform ivec3 tile_place;
 uniform ivec3 tile_size;
-uniform int axis;  // 1 or 2, where not along x
+uniform int axis;  // direction of the target, 1 or 2, if not ALONG_X
 uniform int layer;
-uniform int tall;  // the layer of x has y downwards, not z
+uniform int tall;  // 1: the layer of x has y downwards, not z
 uniform int first_slice;
 
 void unite(ivec3 place, uint bits) {
     const int words_per_row = (region_size.x + 31) >> 5;
     const ivec3 v = tile_place + place;
-    // No other thread of the dispatch has this word.
+    // No other thread of the dispatch writes this word.
     if (bits != 0u) voxel_bits[(v.z * region_size.y + v.y) * words_per_row + (v.x >> 5)] |= bits;
 }
 
@@ -40,15 +41,15 @@ uvec4 column_bits(int word, int other, int column) {
     return texel.x < tile_size.x ? texelFetch(target_slices, ivec3(texel, layer), 0) : uvec4(0u);
 }
 
-// Surfaces meet few of the slices in a row, so that reading the row again for each of them is cheaper than to
-// hold 32 texels in private memory, which drivers unroll.
+// A surface meets few of the slices in a row. So it is cheaper to read the row again for each slice than to
+// hold 32 texels in private memory, whose accesses drivers unroll.
 void unite_texels(int word, int other) {
     uvec4 met = uvec4(0u);
     for (int column = 0; column < 32; ++column) met |= column_bits(word, other, column);
     const int depth = (axis == 1 ? tile_size.y : tile_size.z) - first_slice;
     while (met != uvec4(0u)) {
         const ivec4 first = findLSB(met);
-        // Slices past the end of the tile hold no bits that count.
+        // Bits of slices past the end of the tile do not count.
         const bvec4 inside = lessThan(first + ivec4(0, 32, 64, 96), ivec4(depth));
         met &= met - min(met, uvec4(1u));
         uvec4 bits = uvec4(0u);

@@ -11,7 +11,7 @@
 #include "app/viewer/refinement.h"
 #include "app/viewer/viewer.h"
 #include "base/error.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/voxel_renderer.h"

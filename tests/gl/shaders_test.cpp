@@ -58,7 +58,7 @@ std::string stage_of(const std::filesystem::path& name) {
 std::vector<ShaderVariants> of_charts() {
     std::vector<Defines> sets;
     for (const renderer::MarchSetting& setting : renderer::march_settings()) {
-        if (!setting.content.of_surfaces() || setting.content.has_constant) continue;
+        if (!setting.content.is_surface() || setting.content.has_constant) continue;
         for (const bool progressive : {false, true}) {
             if (progressive && setting.tile_queries == renderer::TileQueries::blocks) continue;
             sets.push_back(renderer::defines(setting));

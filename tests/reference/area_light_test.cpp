@@ -1,11 +1,10 @@
-#include "reference/area_light.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "reference/shadow_truth.h"
 #include "tests/support/soft_shadow_scene.h"
 
 namespace cairn::reference {

@@ -12,7 +12,7 @@
 
 #include "base/error.h"
 #include "reference/light_cache.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "tests/support/scratch_folder.h"
 
 namespace cairn::reference {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/march_twin.h"

@@ -1,5 +1,3 @@
-#include "scenes/builtin/builtin.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 
 namespace cairn::test {

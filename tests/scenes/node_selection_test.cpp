@@ -1,8 +1,7 @@
-#include "scenes/node_selection.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "scenes/snapshot.h"
 
 namespace cairn::scenes {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <glad/gl.h>
 
+#include "renderer/pool/brick_pool.h"
 #include "shaders/interop/pool.h"
 
 namespace cairn::test {
@@ -64,9 +65,9 @@ glm::uvec2 BoxContent::child_mask(const Tile& tile) {
     return mask;
 }
 
-std::vector<renderer::Produced> BoxContent::produce(std::span<const renderer::BrickRequest> requests,
-                                                    const BrickPool& pool) {
-    std::vector<renderer::Produced> out;
+std::vector<renderer::ProducedTile> BoxContent::produce(std::span<const renderer::BrickRequest> requests,
+                                                        const BrickPool& pool) {
+    std::vector<renderer::ProducedTile> out;
     const int side = shape_.m + 2;
     for (const auto& [tile, slot] : requests) {
         std::vector<glm::u8vec4> texels;
@@ -76,7 +77,7 @@ std::vector<renderer::Produced> BoxContent::produce(std::span<const renderer::Br
             texels.push_back(texel(tile.position * std::int64_t(shape_.m) + place, tile.level));
         }
         write(pool, slot, texels);
-        renderer::Produced& produced = out.emplace_back();
+        renderer::ProducedTile& produced = out.emplace_back();
         produced.constant =
             options_.constant &&
             std::all_of(texels.begin(), texels.end(), [&](const auto& t) { return t == texels.front(); });

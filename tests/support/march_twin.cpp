@@ -233,11 +233,11 @@ Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direct
 double shadow_ray(const DenseVoxels& voxels, const dvec3& receiver, const dvec3& normal,
                   const dvec3& direction, double reach) {
     double visibility = 1.0;
-    const double own_reach = std::clamp(2.5 / std::max(glm::dot(normal, direction), 1e-3), 8.0, 64.0);
+    const double self_shadow_reach = std::clamp(2.5 / std::max(glm::dot(normal, direction), 1e-3), 8.0, 64.0);
     cross_voxels(voxels.side, receiver, direction, reach, [&](const ivec3& v, double t_in, double t_out) {
         const double coverage = voxels.coverage[voxels.index(v)];
         const bool own =
-            0.5 * (t_in + t_out) < own_reach && glm::dot(dvec3(v) + 0.5 - receiver, normal) < 1.75;
+            0.5 * (t_in + t_out) < self_shadow_reach && glm::dot(dvec3(v) + 0.5 - receiver, normal) < 1.75;
         if (coverage == 0.0 || own) return true;
         visibility = behind(visibility, coverage);
         return visibility > OPAQUE_TRANSMITTANCE;

@@ -99,10 +99,10 @@ Prober::Prober(const renderer::TreeShape& shape, std::size_t brick_pool_bytes, s
       queries_(QUERY_CAPACITY, renderer::TileQueries::list, shape.has_windows(), {}) {}
 
 void Prober::run(std::vector<Probe>& probes, const std::vector<renderer::Window>& windows,
-                 const renderer::Place& eye) {
+                 const renderer::TilePoint& eye) {
     const renderer::TreeShape& shape = cache_.shape();
     std::vector<interop::MarchWindow> marched =
-        renderer::march_windows(windows, shape, eye, nullptr, glm::dvec3(0, 1, 0));
+        renderer::make_ray_windows(windows, shape, eye, nullptr, glm::dvec3(0, 1, 0));
     gl::Buffer buffer(probes.size() * sizeof(Probe), "probes");
     buffer.write(0, probes.data(), buffer.size_bytes());
     queries_.begin_frame({}, cache_.tree().entry_count(), cache_.pool().slot_count());
@@ -126,11 +126,11 @@ void Prober::run(std::vector<Probe>& probes, const std::vector<renderer::Window>
         program_.use();
         gl::dispatch_threads(probes.size(), 64);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-        const renderer::QueryBuffer::Told told = queries_.read(round_);
+        const renderer::QueryBuffer::Reports reports = queries_.read(round_);
         round_ = round_.next();
-        cache_.begin_round(round_, told.brick_stamps);
-        if (told.counters.waiting_primary == 0) break;
-        cache_.answer(told.queries);
+        cache_.begin_round(round_, reports.brick_stamps);
+        if (reports.counters.waiting_primary == 0) break;
+        cache_.answer(reports.queries);
         cache_.upload();
     }
     buffer.read(0, probes.data(), buffer.size_bytes());

@@ -42,7 +42,7 @@ public:
 
     /// Marches the probes to their ends. If the tree has windows, all probes start at the eye of these.
     void run(std::vector<Probe>& probes, const std::vector<renderer::Window>& windows = {},
-             const renderer::Place& eye = {});
+             const renderer::TilePoint& eye = {});
 
 private:
     renderer::TileCache cache_;

@@ -7,7 +7,6 @@
 
 #include "renderer/shadow/shadow_frustum.h"
 #include "renderer/shadow/soft_shadow_map.h"
-#include "scenes/node_selection.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 

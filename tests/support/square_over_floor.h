@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/renderer.h"
 #include "scenes/snapshot.h"
 #include "tests/support/mesh_rays.h"

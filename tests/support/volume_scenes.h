@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "renderer/produce/transfer_function.h"
+#include "renderer/produce/volume.h"
 #include "renderer/view/view.h"
 #include "scenes/volume/volume.h"
 

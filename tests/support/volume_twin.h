@@ -3,8 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "renderer/produce/transfer_function.h"
-#include "renderer/produce/volume_field.h"
+#include "renderer/produce/volume.h"
 #include "renderer/renderer.h"
 
 namespace cairn::test {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/produce/tile_lists.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "shaders/interop/grid.h"
 #include "shaders/interop/surface.h"

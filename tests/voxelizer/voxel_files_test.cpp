@@ -1,6 +1,4 @@
 // Voxel files, read back by other readers (read_voxels.py).
-#include "voxelizer/files/voxel_files.h"
-
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -18,6 +16,7 @@
 #include "tests/support/lattice_surface.h"
 #include "tests/support/scratch_folder.h"
 #include "voxelizer/files/voxel_tiles.h"
+#include "voxelizer/files/voxel_writer.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
 #include "voxelizer/methods/voxel_attributes.h"
 

@@ -68,7 +68,7 @@ glm::dvec3 ColorPalette::mean_of(const Cells& cells) const {
 std::vector<ColorPalette::Cells> ColorPalette::cut_by_median(const Cells& all) const {
     struct Part {
         Cells cells;
-        double error = 0.0;  ///< summed square of what colours are off the mean, along `axis`
+        double error = 0.0;  ///< sum of squared distances from the mean along `axis`
         int axis = 0;
     };
     const auto measured = [&](Cells cells) {

@@ -9,15 +9,16 @@
 
 namespace cairn::voxelizer {
 
-/// Finds at most 255 colours for many. Up to 255 different ones are kept as they are; more are gathered in
-/// 64^3 cells of the sRGB cube, which are cut by their median (Heckbert 1982) and then moved to the means of
-/// what is nearest to them (Lloyd 1982). The same whatever order the colours come in. Memory: 8 MiB.
+/// Finds a palette of at most 255 colours. Up to 255 different colours are kept as they are. More are
+/// gathered in 64^3 cells of the sRGB cube; the cells are cut by their median (Heckbert 1982), and the
+/// palette's colours then moved to the means of the cells nearest to them (Lloyd 1982). The palette does not
+/// depend on the order in which colours are added. Memory: 8 MiB.
 class ColorPalette {
 public:
     static constexpr std::size_t capacity = 255;
 
     void add(const glm::u8vec3& color);
-    /// Once, after the last add().
+    /// Computes the palette; to be called once, after the last add().
     void build();
 
     [[nodiscard]] const std::vector<glm::u8vec3>& colors() const { return colors_; }
@@ -38,7 +39,7 @@ private:
     [[nodiscard]] glm::dvec3 mean_of(const Cells& cells) const;
     void move_to_means(const Cells& all);
 
-    /// Index of each colour 0xRRGGBB. If there are more colours than the capacity, one more than fit.
+    /// Index per colour 0xRRGGBB. Holds at most one colour more than the capacity.
     std::map<std::uint32_t, std::uint8_t> exact_;
     std::vector<Cell> cells_ = std::vector<Cell>(64 * 64 * 64);
     std::vector<glm::u8vec3> colors_;

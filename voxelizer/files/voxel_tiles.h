@@ -7,17 +7,19 @@
 
 namespace cairn::voxelizer {
 
-/// The part of a whole that is one tile. @param origin  a multiple of `side`, inside; that is one of 32.
+/// The bits of one tile of a grid.
+/// @param origin  a multiple of `side`, inside the grid
+/// @param side    a multiple of 32
 [[nodiscard]] BitGrid tile_bits(const BitGrid& whole, const glm::ivec3& origin, int side = VOXEL_TILE_SIDE);
 
-/// Sets the bits of a tile in a whole.
+/// Sets the bits of a tile in a grid.
 void put_tile(const VoxelTile& tile, BitGrid& whole);
 
-/// Gives a writer all tiles of a whole that hold voxels, without attributes, in the order that it wants.
+/// Gives a writer all tiles of a grid that hold voxels, without attributes, in the order of VoxelWriter.
 void add_tiles(VoxelWriter& writer, const BitGrid& whole);
 
-/// Calls `visit(voxel, number)` for each occupied voxel in the order of VoxelAttributes; the number counts
-/// them.
+/// Calls `visit(voxel, number)` for each occupied voxel. `number` counts up from 0, in the order of
+/// VoxelAttributes.
 template <typename Visit>
 void for_each_voxel(const BitGrid& bits, const Visit& visit) {
     std::size_t number = 0;

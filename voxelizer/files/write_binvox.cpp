@@ -88,7 +88,7 @@ private:
     VoxelRows rows_;
     glm::ivec3 size_;
     int side_;
-    int row_ = 0;  ///< of the plane
+    int row_ = 0;  ///< number of the row in its plane
     bool value_ = false;
     std::uint64_t count_ = 0;
 };

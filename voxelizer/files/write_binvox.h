@@ -13,7 +13,7 @@ namespace cairn::voxelizer {
 /// 0.5) / dim.
 ///
 /// The format asks for a cube and has one scale. A grid that is not a cube is filled up with empty voxels
-/// past its high ends, so that every reader finds each voxel in its place; empty space costs a byte for 127
+/// past its high ends, so that every reader finds each voxel in its place; empty space costs a byte per 127
 /// voxels. Memory: as VoxelRows.
 [[nodiscard]] std::unique_ptr<VoxelWriter> make_binvox_writer(const std::filesystem::path& path,
                                                               const Grid& grid);

@@ -10,13 +10,13 @@
 namespace cairn::voxelizer {
 
 /// Writes NumPy's .npy, version 1: uint8, shape = the grid's resolution, C order, so a[x, y, z]; 1 =
-/// occupied. The file says nothing of the world, nor of attributes.
+/// occupied. The file holds neither the grid's place in the world nor attributes.
 ///
-/// Long runs of empty voxels are holes in the file where the file system can have them. Memory: VoxelRows'.
+/// Long runs of empty voxels are holes in the file, if the file system supports holes. Memory: as VoxelRows.
 [[nodiscard]] std::unique_ptr<VoxelWriter> make_npy_writer(const std::filesystem::path& path,
                                                            const Grid& grid);
 
-/// The same from a whole.
+/// Writes a whole grid as .npy.
 /// @throws Error as OutputFile does.
 void write_npy(const BitGrid& bits, const std::filesystem::path& path);
 

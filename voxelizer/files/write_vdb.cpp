@@ -95,7 +95,7 @@ auto file_order(const Node& node) {
 /// The voxels of a tile as leaves, by their place in the node.
 struct LeafLayout {
     explicit LeafLayout(const BitGrid& bits);
-    /// Of an occupied voxel among the occupied ones, in the tree's order.
+    /// Rank of an occupied voxel among the occupied voxels, in the tree's order.
     [[nodiscard]] std::size_t place_of(const glm::ivec3& v) const;
 
     std::vector<LeafMask> leaves;
@@ -182,7 +182,7 @@ private:
     std::uint64_t leaf_count_ = 0;
     std::uint64_t voxel_count_ = 0;
     bool has_attributes_ = false;
-    glm::ivec3 low_{INT_MAX}, high_{INT_MIN};  ///< of the occupied voxels
+    glm::ivec3 low_{INT_MAX}, high_{INT_MIN};  ///< bounds of the occupied voxels
     std::uint64_t written_ = 0;
 };
 
@@ -243,9 +243,9 @@ void VdbWriter::finish() {
     out.put(std::uint32_t(224));        // of the file's layout
     out.put(std::uint32_t(10));         // of the library: informative
     out.put(std::uint32_t(0));
-    out.put(char(1));  // grids tell where they lie
-    // Tells two versions of a file apart while one of them is being read; a fixed one keeps the same voxels
-    // the same file.
+    out.put(char(1));  // grids hold their offsets in the file
+    // A unique identifier, by which readers distinguish versions of a file. It is fixed, so that the same
+    // voxels give the same file.
     for (const char c : std::string_view("63616972-6e00-4000-8000-000000000000"))
         out.put(c);
     out.put(std::uint32_t(1));

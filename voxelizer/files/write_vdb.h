@@ -8,10 +8,10 @@
 
 namespace cairn::voxelizer {
 
-/// Writes OpenVDB's .vdb: a float grid "density" that is 1 in occupied voxels and inactive, 0, elsewhere; and
-/// where the tiles have attributes, vector grids of the same voxels: "Cd", linear base colour, and "N",
-/// normals in world space. Values are stored as half floats. Index (i, j, k) is the centre of the voxel, as
-/// is OpenVDB's custom; the grids carry the transform to the world.
+/// Writes OpenVDB's .vdb: a float grid "density" that is 1 in occupied voxels, and 0 and inactive elsewhere.
+/// If the tiles have attributes, the file also has vector grids of the same voxels: "Cd", linear base colour,
+/// and "N", normals in world space. Values are stored as half floats. Index (i, j, k) is the centre of a
+/// voxel, as OpenVDB has it; the grids carry the transform to the world.
 ///
 /// The file is written without the library, which needs the whole tree in memory
 /// (docs/decisions/voxelizing.md). Its layout is that of file version 224, as OpenVDB 7 to 12 write it:

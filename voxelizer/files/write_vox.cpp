@@ -42,7 +42,7 @@ struct Piece {  ///< the voxels of a tile, in the side file
 
 struct Model {
     glm::ivec3 size{0};  ///< as the file has it
-    glm::ivec3 low{0};   ///< in the editor's scene
+    glm::ivec3 low{0};   ///< low corner in the editor's scene
     std::vector<Piece> pieces;
     std::uint64_t voxel_count = 0;
 };
@@ -94,7 +94,7 @@ private:
     Grid grid_;
     ColorPalette palette_;
     std::map<std::tuple<int, int, int>, Model> models_;
-    std::uint64_t bytes_ = 0;  ///< of all models
+    std::uint64_t bytes_ = 0;  ///< bytes of all models
 };
 
 Model& VoxWriter::model_of(const VoxelTile& tile) {

@@ -18,7 +18,7 @@ namespace cairn::voxelizer {
 namespace {
 
 /// How many rows of a shared triangle a thread may have: its loops over rows and words stay far from the
-/// limit that VOXEL_REGION_SIDE tells of.
+/// limit that VOXEL_REGION_SIDE keeps.
 unsigned thread_rows(const Region& region) {
     return unsigned(std::clamp(VOXEL_REGION_SIDE / (region.size.x / 32 + 4), 1, VOXEL_THREAD_ROWS));
 }
@@ -41,11 +41,11 @@ void ConservativeVoxelizer::mark_doubtful(const Region& region, unsigned count) 
 }
 
 /// Threads that share a triangle of a queue.
-unsigned ConservativeVoxelizer::threads_a_triangle(const Region& region, unsigned queue) {
+unsigned ConservativeVoxelizer::threads_per_triangle(const Region& region, unsigned queue) {
     unsigned of_class = VOXEL_SHARED_LEAST;
     for (unsigned smaller = VOXEL_QUEUE_SHARED; smaller < queue; ++smaller)
         of_class *= VOXEL_SHARED_FACTOR;
-    // What the region's largest triangle may need: twice the rows, because they are shared unevenly.
+    // The region's largest triangle may need threads for twice its rows, because rows are shared unevenly.
     const glm::uvec3 size(region.size);
     const std::size_t rows = 2 * (std::size_t(size.y) * size.z + 8 * std::max(size.y, size.z));
     const std::size_t groups = rows / thread_rows(region) / VOXEL_GROUP + 1;
@@ -57,11 +57,11 @@ unsigned ConservativeVoxelizer::threads_a_triangle(const Region& region, unsigne
 /// busy for longer.
 void ConservativeVoxelizer::mark_queued(const Region& region, unsigned queue, unsigned count) {
     constexpr unsigned threads_at_once = 1U << 26;
-    const unsigned threads = threads_a_triangle(region, queue);
+    const unsigned threads = threads_per_triangle(region, queue);
     const unsigned triangles_at_once = std::max(threads_at_once / threads, 1U);
     set_region(mark_large_, region);
     mark_large_.set("queue", queue);
-    mark_large_.set("threads_a_triangle", threads);
+    mark_large_.set("threads_per_triangle", threads);
     mark_large_.use();
     for (unsigned first = 0; first < count; first += triangles_at_once) {
         const unsigned triangles = std::min(triangles_at_once, count - first);

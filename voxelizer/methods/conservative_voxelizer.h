@@ -10,8 +10,8 @@
 
 namespace cairn::voxelizer {
 
-/// Marks every voxel whose closed box meets a triangle of the surface: never one fewer, never one more, the
-/// same bits on every driver.
+/// Marks exactly the voxels whose closed box meets a triangle of the surface: no voxel less, none more, and
+/// the same bits on every driver.
 ///
 /// Separating axes: Akenine-Möller 2001; row spans: Schwarz and Seidel 2010, section 3.
 class ConservativeVoxelizer final : public Voxelizer {
@@ -21,12 +21,12 @@ public:
 private:
     void mark(const GpuSurface& surface, const Region& region, std::span<const ChunkPart> parts,
               gl::Buffer& bits) override;
-    /// Marks the bound chunk, or the bound subset of it; returns what the shaders left to the CPU.
+    /// Marks the bound chunk, or its bound subset; returns the candidates that the shaders left to the CPU.
     std::vector<MaskCandidate> mark_chunk(const Region& region, std::size_t count, bool has_subset);
     void mark_doubtful(const Region& region, unsigned count);
-    [[nodiscard]] static unsigned threads_a_triangle(const Region& region, unsigned queue);
+    [[nodiscard]] static unsigned threads_per_triangle(const Region& region, unsigned queue);
     void mark_queued(const Region& region, unsigned queue, unsigned count);
-    /// Adds far triangles, and voxels that the CPU found.
+    /// Marks far triangles, and the voxels that the CPU found.
     static void mark_on_cpu(const GpuSurface& surface, const Region& region,
                             const std::vector<glm::ivec3>& voxels, gl::Buffer& bits);
 

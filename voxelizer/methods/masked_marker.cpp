@@ -56,11 +56,11 @@ std::vector<MaskCandidate> MaskedMarker::mark(const Region& region, unsigned que
 }
 
 unsigned MaskedMarker::list(const Region& region, unsigned queue, const Work& work) {
-    // The loops of a thread over rows and voxels stay far from the limit that VOXEL_REGION_SIDE tells of.
+    // The loops of a thread over rows and voxels stay far from the limit that VOXEL_REGION_SIDE keeps.
     const unsigned rows = work.last_row - work.first_row;
-    const unsigned rows_a_thread = std::max(1U, unsigned(VOXEL_REGION_SIDE / region.size.x));
+    const unsigned rows_per_thread = std::max(1U, unsigned(VOXEL_REGION_SIDE / region.size.x));
     const unsigned slices =
-        queue == VOXEL_QUEUE_MASKED_SMALL ? 1 : (rows + rows_a_thread - 1) / rows_a_thread;
+        queue == VOXEL_QUEUE_MASKED_SMALL ? 1 : (rows + rows_per_thread - 1) / rows_per_thread;
     candidates_.fill(0, header_bytes, 0);
     set_region(list_, region);
     list_.set("queue", queue);

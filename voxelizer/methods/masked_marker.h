@@ -24,16 +24,17 @@ class MaskedMarker {
 public:
     explicit MaskedMarker(const gl::ShaderSource& shaders);
 
-    /// Bits, queue and surface are bound. @return what the shader left to the CPU.
+    /// Marks the voxels of the queued triangles. Bits, queue and surface must be bound.
+    /// @return the candidates that the shader left to the CPU.
     [[nodiscard]] std::vector<MaskCandidate> mark(const Region& region, unsigned queue, unsigned count);
 
 private:
-    /// Some triangles of a queue, and of each so many rows of its bounding box.
+    /// Some triangles of a queue, and a range of rows of the bounding box of each.
     struct Work {
         unsigned first, count;
         unsigned first_row, last_row;
     };
-    /// How the buffer of candidates begins (shaders/voxelize/candidates.glsl).
+    /// The first words of the buffer of candidates (shaders/voxelize/candidates.glsl).
     struct Header {
         std::uint32_t listed, undecided;
     };
@@ -47,12 +48,13 @@ private:
     std::vector<Work> waiting_;
 };
 
-/// Which candidates are surface, on the CPU. Reads the triangles back from the driver.
+/// The voxels of those candidates that are surface, decided on the CPU. Reads the triangles back from the
+/// driver.
 [[nodiscard]] std::vector<glm::ivec3> decide_on_cpu(const std::vector<MaskCandidate>& candidates,
                                                     const GpuSurface& surface, std::size_t chunk,
                                                     const Region& region);
 
-/// Gives a program that includes voxelize/bits.glsl its region.
+/// Sets the region of a program that includes voxelize/bits.glsl.
 void set_region(const gl::Program& program, const Region& region);
 
 }  // namespace cairn::voxelizer

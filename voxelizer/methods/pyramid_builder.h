@@ -20,7 +20,7 @@ public:
     [[nodiscard]] BitmaskPyramid build(const gl::Buffer& bits, const glm::ivec3& size,
                                        Reduction reduction = Reduction::xyz);
 
-    /// All coarser levels of the last call, without their read-back, by the wall clock.
+    /// Time of all coarser levels in the last build(), without their read-back, by the wall clock.
     [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
 
 private:
@@ -33,20 +33,20 @@ private:
     void prepare(const glm::ivec3& size, Reduction reduction);
     void halve(const gl::TextureHandle& fine, const glm::ivec3& fine_size, const Level& coarse);
 
-    /// What tells the programs that halve a level apart.
+    /// The key of the programs that halve a level.
     struct HalveVariant {
         bool is_wide = false;  ///< rows are read four words at a time
         [[nodiscard]] auto operator<=>(const HalveVariant&) const = default;
     };
     gl::ProgramFamily<HalveVariant> halve_;
-    gl::TextureHandle finest_;   ///< a view of the buffer that the last call was given
+    gl::TextureHandle finest_;   ///< view of the buffer that the last build() was given
     std::vector<Level> levels_;  ///< kept for the next pyramid of the same size and reduction
     glm::ivec3 finest_size_{0};
     Reduction reduction_ = Reduction::xyz;
     double last_milliseconds_ = 0.0;
 };
 
-/// Bytes of BitGrid::words.
+/// Bytes of BitGrid::words of a grid of this size.
 [[nodiscard]] std::size_t bit_bytes(const glm::ivec3& size);
 
 [[nodiscard]] BitGrid read_bits(const gl::Buffer& bits, const glm::ivec3& size);

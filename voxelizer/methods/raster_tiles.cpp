@@ -19,7 +19,7 @@ struct Range {
     std::int64_t first, end;
 };
 
-/// What surfaces can reach: vertices lie within [-2^24, 2^25].
+/// The range that surfaces can reach: vertices lie within [-2^24, 2^25].
 Range reachable(const Region& region, int axis) {
     const std::int64_t cube = std::int64_t(1) << region.level;
     const std::int64_t origin = region.origin[axis];

@@ -15,7 +15,7 @@
 namespace cairn::voxelizer {
 namespace {
 
-/// Of the lists of shaders/voxelize/raster_lists.glsl.
+/// Words per list of shaders/voxelize/raster_lists.glsl, and words of all lists.
 constexpr std::size_t list_words = 3 * std::size_t(VOXEL_BATCH_TRIANGLES);
 constexpr std::size_t all_list_words =
     RASTER_KINDS + RASTER_KINDS * (list_words + std::size_t(VOXEL_BATCH_TRIANGLES));

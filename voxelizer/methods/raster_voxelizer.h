@@ -17,21 +17,23 @@
 
 namespace cairn::voxelizer {
 
-/// How a primitive finds its layer.
+/// How a primitive is sent to its layer.
 enum class LayerPath : std::uint8_t {
-    geometry_shader,  ///< OpenGL 4.5 alone
-    /// ARB_shader_viewport_layer_array, and storage buffers in vertex shaders.
+    /// By a geometry shader, with OpenGL 4.5 alone.
+    geometry_shader,
+    /// By the vertex shader, which needs ARB_shader_viewport_layer_array and storage buffers in vertex
+    /// shaders.
     vertex_shader
 };
 
-/// What tells the programs that rasterize apart.
+/// The key of the programs that rasterize.
 struct RasterVariant {
-    int corners = 3;     ///< of a primitive: 3, 2 or 1
+    int corners = 3;     ///< corners of a primitive: 3, 2 or 1
     bool cover = false;  ///< primitives are enlarged to all pixels that they touch
     /// Directions in which a primitive is drawn: 1 or 3; 0: the one that sees it most squarely.
     int axes = 1;
-    bool masked = false;  ///< alpha masks are looked at
-    int targets = 1;      ///< of the slices: 1, 2, 4 or 8
+    bool masked = false;  ///< alpha masks cut triangles
+    int targets = 1;      ///< render targets that hold the slices: 1, 2, 4 or 8
     [[nodiscard]] auto operator<=>(const RasterVariant&) const = default;
 };
 [[nodiscard]] gl::Defines defines(const RasterVariant& variant);
@@ -39,34 +41,34 @@ struct RasterVariant {
 [[nodiscard]] std::vector<RasterVariant> valid_raster_variants();
 
 /// Voxelizes by rasterization into one bit per slice: the methods of Forest et al. 2009, section 2, to
-/// compare with. None of them is exact (`cairn check` counts how far off they are).
+/// compare with. None of them is exact (`cairn check` counts their errors).
 ///
 /// `slice_map` looks along z alone, as Eisemann and Décoret 2006: a fragment marks the voxel at its pixel's
-/// centre. Surfaces steep to z have holes, and what is parallel to z vanishes.
+/// centre. Surfaces that are steep to z have holes, and surfaces parallel to z vanish.
 ///
-/// `three_axis` looks along x, y and z and joins the three: surfaces have no gaps that a path through voxel
-/// faces could pass, but are thin: of the voxels that a triangle touches, those stay empty in whose pixels it
-/// covers no centre. What is smaller than a voxel may vanish.
+/// `three_axis` looks along x, y and z and joins the three results. Surfaces have no gaps that a path through
+/// voxel faces could pass, but are thin: a voxel that a triangle touches stays empty if the triangle covers
+/// no pixel's centre there. Things smaller than a voxel may vanish.
 ///
 /// `three_axis_conservative` draws each triangle in the direction that sees it most squarely, enlarged to all
 /// pixels that it touches (Hasselgren et al. 2005), and marks all slices that its plane meets in the pixel.
-/// It misses nothing; it marks voxels beside edges that touch the triangle in this projection and not in the
-/// others.
+/// It misses no voxel, but also marks voxels beside edges, which touch the triangle in this projection and
+/// not in the others.
 ///
-/// All of them: segments and points are GL's lines and points, which leave out the pixel that a line ends in
-/// (enlarged like triangles in the conservative one). Alpha masks are decided at the pixel's centre, or the
-/// triangle's nearest point, so that even the conservative method can miss a voxel whose only visible texel
-/// lies elsewhere. A face in the region's far end belongs to the region's last voxel. Far triangles
-/// (Surface::far_triangles) are cut to the lattice's range first, to the nearest lattice point. Lines to
-/// points more than 2^16 voxels away bend by the driver's rounding. What lies within a float's rounding of a
-/// boundary may fall to another side in another region.
+/// For all three methods: segments and points are GL's lines and points, which leave out the pixel that a
+/// line ends in (enlarged like triangles in the conservative one). Alpha masks are decided at the pixel's
+/// centre, or the triangle's nearest point, so that even the conservative method can miss a voxel whose only
+/// visible texel lies elsewhere. A face in the region's far end belongs to the region's last voxel. Far
+/// triangles (Surface::far_triangles) are cut to the lattice's range first, to the nearest lattice point.
+/// Lines to points more than 2^16 voxels away are bent by the driver's rounding. A point within a float's
+/// rounding of a boundary may fall to another side of it in another region.
 ///
 /// Memory: targets of one bit per voxel and direction, at most RASTER_TARGET_MIB at a time, and 16 MiB of
 /// lists.
 class RasterVoxelizer final : public Voxelizer {
 public:
     /// @param method  one of the three above
-    /// @throws Error  Fault::context: the driver cannot take the path that was asked for.
+    /// @throws Error  Fault::context if the driver does not offer `path`.
     explicit RasterVoxelizer(Method method, const gl::ShaderSource& shaders = {},
                              LayerPath path = LayerPath::geometry_shader);
 
@@ -79,7 +81,7 @@ private:
     void mark(const GpuSurface& surface, const Region& region, std::span<const ChunkPart> parts,
               gl::Buffer& bits) override;
     void draw_chunk(const gl::Buffer& positions, const RasterTile& tile, const ChunkPart& part, bool masked);
-    /// How many primitives of each kind there are.
+    /// Lists the primitives of a batch. @return number of primitives of each kind.
     [[nodiscard]] Counts list_batch(const RasterTile& tile, std::size_t first, std::size_t count,
                                     bool has_subset);
     void draw_list(unsigned kind, unsigned count, const RasterTile& tile, bool masked);

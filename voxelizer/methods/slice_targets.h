@@ -14,20 +14,20 @@ namespace cairn::voxelizer {
 class SliceTargets {
 public:
     SliceTargets() = default;
-    /// @param plane   texels across and down, at most 1024: enough for every layer
+    /// @param plane   width and height in texels, at most 1024, that suffice for every layer
     /// @param layers  1 or 3
     /// @param slices  at most 1024: eight targets
-    /// @throws Error  Fault::memory when the driver refuses them.
+    /// @throws Error  Fault::memory if the driver refuses the textures.
     SliceTargets(const glm::ivec2& plane, int layers, int slices);
 
     [[nodiscard]] bool fits(const glm::ivec2& plane, int layers, int slices) const;
     [[nodiscard]] int target_count() const { return int(textures_.size()); }
     [[nodiscard]] GLuint texture(int target) const { return textures_[std::size_t(target)].id(); }
 
-    /// Clears all bits and directs drawing here.
+    /// Clears all bits and makes these textures the targets of drawing.
     void begin() const;
 
-    /// Of the textures.
+    /// Bytes of the textures.
     [[nodiscard]] static std::size_t bytes(const glm::ivec2& plane, int layers, int slices);
 
 private:

@@ -142,7 +142,7 @@ void AttributeVoxelizer::gather_chunk(const ChunkBinding& chunk, const Region& r
     }
     subset_ = subset;
     list_small_.set("has_subset", int(subset != nullptr));
-    // Where pairs find no room, half of the triangles are listed anew: few always have room.
+    // If pairs find no room, half of the triangles are listed anew; for few triangles there is always room.
     std::vector<Work> waiting;
     for (std::size_t end = count; end > 0;) {
         const std::size_t batch = std::min<std::size_t>(end, VOXEL_BATCH_TRIANGLES);
@@ -167,15 +167,15 @@ void AttributeVoxelizer::gather_chunk(const ChunkBinding& chunk, const Region& r
 }
 
 void AttributeVoxelizer::gather_queued(const ChunkBinding& chunk, const Region& region, unsigned count) {
-    // The loops of a thread over rows and voxels stay far from the limit that VOXEL_REGION_SIDE tells of.
-    const unsigned rows_a_thread = std::max(1U, unsigned(VOXEL_REGION_SIDE / (16 * region.size.x)));
+    // The loops of a thread over rows and voxels stay far from the limit that VOXEL_REGION_SIDE keeps.
+    const unsigned rows_per_thread = std::max(1U, unsigned(VOXEL_REGION_SIDE / (16 * region.size.x)));
     constexpr unsigned most_threads = 1U << 24;
     std::vector<Work> waiting = {{0, count, 0, unsigned(region.size.y) * unsigned(region.size.z)}};
     while (!waiting.empty()) {
         const Work work = waiting.back();
         waiting.pop_back();
         const unsigned rows = work.last_row - work.first_row;
-        const unsigned slices = (rows + rows_a_thread - 1) / rows_a_thread;
+        const unsigned slices = (rows + rows_per_thread - 1) / rows_per_thread;
         const bool too_long = std::uint64_t(slices) * work.count > most_threads && work.count > 1;
         const unsigned listed = too_long ? 0 : list(list_large_, chunk, work, slices);
         if (!too_long && listed <= ATTRIBUTE_PAIRS) {

@@ -17,24 +17,24 @@ namespace cairn::voxelizer {
 /// Gathers the mean base colour and normal of the surface inside each occupied voxel, on the GPU. Needs the
 /// current context of its construction.
 ///
-/// Each triangle counts with the area of its part inside the closed voxel. Base colour is factor times vertex
-/// colour times texture (level 0, the nearest texel), in linear space; what an alpha mask cuts away does not
-/// count. Where a texture varies on a part, up to 64 samples for each of its corners past the second estimate
-/// the mean. What has no area (lines, points, contact) counts as 2^-22 of a voxel's face: only where nothing
-/// else is. A triangle that reaches further than one root cube past the grid (FarTriangle) has its own
-/// plane's normal.
+/// The weight of a triangle is the area of its part inside the closed voxel. Base colour is factor times
+/// vertex colour times texture (level 0, the nearest texel), in linear space; parts that an alpha mask cuts
+/// away do not count. If a texture varies on a part, the mean is estimated from up to 64 samples for each of
+/// the part's corners past the second. A part without area (of a line, a point, or a triangle that only
+/// touches) weighs 2^-22 of a voxel's face, so that it counts only if no other part is there. A triangle that
+/// reaches further than one root cube past the grid (FarTriangle) has the normal of its plane.
 ///
-/// The same bits whatever the order of the triangles, and for a tile alone as for the same place in a whole.
+/// The bits do not depend on the order of the triangles, and are the same for a tile alone and in a larger
+/// region.
 class AttributeVoxelizer {
 public:
     explicit AttributeVoxelizer(const gl::ShaderSource& shaders = {});
 
     /// @param surface  built with SurfaceOptions::attributes
-    /// @param bits     of the region. An occupied voxel that no triangle of the surface touches (the inside
-    /// of
+    /// @param bits     bits of the region. An occupied voxel that no triangle of the surface touches (inside
     ///                 a solid) gets colour and normal 0.
     /// @param subset   as in Voxelizer::voxelize
-    /// @throws Error   Fault::memory when the bits pass the driver's shader-storage limit: gather tile by
+    /// @throws Error   Fault::memory if the bits pass the driver's shader-storage limit: then gather tile by
     /// tile.
     ///
     /// Memory: 56 bytes per occupied voxel, at most 56 MiB, 16 MiB of pairs, and the bits.
@@ -42,12 +42,12 @@ public:
                                          std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
 private:
-    /// Occupied voxels that are gathered at a time, by their rank.
+    /// A range of occupied voxels, by rank, that are gathered at a time.
     struct Part {
-        std::uint32_t first, last;  ///< ranks; last is one past
-        glm::ivec2 slices;          ///< z that they lie in, inclusive
+        std::uint32_t first, last;  ///< first rank, and one past the last
+        glm::ivec2 slices;          ///< first and last z of the voxels
     };
-    /// Some triangles, and of each so many rows of its bounding box.
+    /// Some triangles, and a range of rows of the bounding box of each.
     struct Work {
         unsigned first, count;
         unsigned first_row, last_row;
@@ -63,7 +63,7 @@ private:
     void gather_chunk(const ChunkBinding& chunk, const Region& region, const Part& part, std::size_t count,
                       const gl::Buffer* subset);
     void gather_queued(const ChunkBinding& chunk, const Region& region, unsigned count);
-    /// Runs a list program over some triangles; @return how many pairs there are.
+    /// Runs a list program over some triangles. @return number of pairs.
     [[nodiscard]] unsigned list(const gl::Program& program, const ChunkBinding& chunk, const Work& work,
                                 unsigned slices);
     void gather_pairs(const ChunkBinding& chunk, const Region& region, unsigned count);
@@ -79,7 +79,7 @@ private:
     gl::Buffer ranks_;
     gl::Buffer sums_;
     const gl::Buffer* subset_ = nullptr;
-    std::vector<std::uint32_t> slice_ranks_;  ///< occupied voxels before each z of the region, and all
+    std::vector<std::uint32_t> slice_ranks_;  ///< occupied voxels before each z, and in all
 };
 
 }  // namespace cairn::voxelizer

@@ -16,20 +16,20 @@ struct TileOptions {
     int tile_side = VOXEL_TILE_SIDE;  ///< a multiple of 32
     /// Bytes of bits up to which a grid is marked at once (512^3 voxels).
     std::size_t whole_bytes = std::size_t(16) << 20U;
-    /// Bytes of bits of a region of a larger grid, but at least one tile: regions are parts of slabs that are
-    /// one tile wide along x. Measured by `cairn bench region-sizes`: smaller ones look at large triangles
-    /// more often, larger ones gain nothing.
+    /// Bytes of bits per region of a larger grid; a region is at least one tile. Regions are parts of slabs
+    /// that are one tile wide along x. Measured by `cairn bench region-sizes`: with smaller regions, large
+    /// triangles are looked at more often; larger regions gain nothing.
     std::size_t region_bytes = std::size_t(16) << 20U;
-    /// Marks the first region twice, and leaves the first time out of the figures: drivers compile programs
+    /// Marks the first region twice, and leaves the first run out of the statistics: drivers compile programs
     /// at their first use.
     bool warm_up = false;
 };
 
 struct TileStatistics {
     std::uint64_t occupied = 0;  ///< occupied voxels
-    std::uint64_t tiles = 0;     ///< tiles that held a voxel
+    std::uint64_t tiles = 0;     ///< tiles with a voxel
     std::uint64_t regions = 0;
-    /// Triangles given to the regions; a triangle that meets several regions counts once per region.
+    /// Triangles given to the regions, each counted once per region that it meets.
     std::uint64_t triangles = 0;
     /// Sum of Voxelizer::last_milliseconds over all regions.
     double milliseconds = 0.0;
@@ -37,13 +37,14 @@ struct TileStatistics {
 
 /// Takes over a tile that holds at least one voxel; its attributes are empty.
 using TileSink = std::function<void(VoxelTile&&)>;
-/// Told the share done, in [0, 1], before each region. @return false: stop.
+/// Takes the share that is done, in [0, 1], before each region. @return false to stop.
 using TileProgress = std::function<bool(double)>;
 
-/// Voxelizes a grid of any size, tile by tile in the order that VoxelWriter wants, in bounded memory: two
-/// regions and one tile beside the surface and its index. What the index says is empty costs nothing.
+/// Voxelizes a grid of any size, tile by tile in the order of VoxelWriter, in bounded memory: two regions and
+/// one tile beside the surface and its index. Parts of the grid in which the index has no triangle cost
+/// nothing.
 ///
-/// @param index  the index of the same surface; the Surface itself is not needed any more.
+/// @param index  the index of the same surface; the Surface itself is not needed.
 /// @throws Error  as Voxelizer::voxelize; Fault::interrupted when `progress` says to stop; whatever `sink`
 ///                throws.
 TileStatistics voxelize_tiles(Voxelizer& voxelizer, const GpuSurface& surface, TriangleIndex& index,

@@ -21,7 +21,7 @@
 namespace cairn::voxelizer {
 namespace {
 
-static_assert(max_region_side == VOXEL_REGION_SIDE, "the shaders take other regions");
+static_assert(voxel_region_side == VOXEL_REGION_SIDE, "the shaders take other regions");
 
 constexpr std::array<std::pair<Method, std::string_view>, 4> method_names = {
     {{Method::conservative, "conservative"},

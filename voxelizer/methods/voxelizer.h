@@ -17,19 +17,21 @@ namespace cairn::voxelizer {
 
 class PyramidBuilder;
 
-/// The most voxels of a region along an axis (VOXEL_REGION_SIDE in the shaders).
-constexpr int max_region_side = 16384;
+/// Greatest number of voxels of a region along an axis (VOXEL_REGION_SIDE in the shaders).
+constexpr int voxel_region_side = 16384;
 
-/// How voxels are found. Only `conservative` is exact; the others are Forest et al.'s, to compare with.
+/// How voxels are found. Only `conservative` is exact; the others are those of Forest et al. 2009, to compare
+/// with.
 enum class Method : std::uint8_t {
-    /// Every voxel whose closed box meets a triangle: conservative_voxelizer.h.
+    /// Exactly the voxels whose closed box meets a triangle: conservative_voxelizer.h.
     conservative,
     slice_map,                ///< rasterized along z: raster_voxelizer.h
     three_axis,               ///< rasterized along x, y and z: raster_voxelizer.h
     three_axis_conservative,  ///< three_axis with enlarged triangles
 };
 
-/// @throws Error  Fault::usage if there is no such method; says which methods there are.
+/// The method of a name.
+/// @throws Error  Fault::usage if there is no such method; the message lists the methods.
 [[nodiscard]] Method method_named(std::string_view name);
 [[nodiscard]] std::string_view name_of(Method method);
 /// All methods, in the order of the enumeration.
@@ -45,21 +47,22 @@ public:
     Voxelizer& operator=(const Voxelizer&) = delete;
     Voxelizer& operator=(Voxelizer&&) = delete;
 
-    /// @param subset  global triangle numbers, or none for all. Must hold every triangle that meets the
-    ///                region for the bits to be right; others cost time only. Far triangles are always
-    ///                marked.
-    /// @throws Error  Fault::memory when the region's bits pass the driver's shader-storage limit: the
-    ///                message says what would fit. Fault::usage when the region has more than
-    ///                max_region_side voxels along an axis.
+    /// The voxels of a region.
+    /// @param subset  global numbers of the triangles to mark; none: all. It must hold every triangle that
+    ///                meets the region; further ones only cost time. Far triangles are always marked.
+    /// @throws Error  Fault::memory if the region's bits pass the driver's shader-storage limit: the message
+    ///                says what would fit. Fault::usage if the region has more than voxel_region_side voxels
+    ///                along an axis.
     [[nodiscard]] BitGrid voxelize(const GpuSurface& surface, const Region& region,
                                    std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
-    /// Voxelizes into a grid of the caller's. Where that held a region of this size before, nothing is
-    /// allocated, on the CPU or the GPU (but for what alpha masks and far triangles leave to the CPU).
+    /// Voxelizes into a grid of the caller's. If that held a region of this size before, nothing is allocated
+    /// on the CPU or the GPU, except for voxels that alpha masks and far triangles leave to the CPU.
     void voxelize_into(const GpuSurface& surface, const Region& region, BitGrid& out,
                        std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
-    /// Voxelizes with the bits left on the GPU, BitGrid::words of the region; valid until the next call.
+    /// Voxelizes and leaves the bits on the GPU. @return BitGrid::words of the region, valid until the next
+    /// call.
     const gl::Buffer& voxelize_on_gpu(const GpuSurface& surface, const Region& region,
                                       std::optional<std::span<const std::uint32_t>> subset = std::nullopt);
 
@@ -69,28 +72,28 @@ public:
         std::optional<std::span<const std::uint32_t>> subset = std::nullopt,
         Reduction reduction = Reduction::xyz);
 
-    /// The voxelization alone of the last call (no upload, no read-back, no pyramid), from an idle driver to
-    /// an idle driver by the wall clock: the timer queries of llvmpipe do not see compute work.
+    /// Time of the last voxelization alone (no upload, no read-back, no pyramid), from an idle driver to an
+    /// idle driver by the wall clock: the timer queries of llvmpipe do not see compute work.
     [[nodiscard]] double last_milliseconds() const { return last_milliseconds_; }
-    /// What the coarser levels of the last pyramid took on top.
+    /// Time of the coarser levels of the last pyramid, which comes on top of last_milliseconds().
     [[nodiscard]] double last_pyramid_milliseconds() const;
 
 protected:
     explicit Voxelizer(const gl::ShaderSource& shaders);
 
-    /// What to mark of one chunk of the surface.
+    /// The triangles to mark of one chunk of the surface.
     struct ChunkPart {
         std::size_t count = 0;             ///< number of triangles
         std::optional<gl::Buffer> subset;  ///< numbers of the triangles in the chunk; none: all
     };
     /// @param parts  one per chunk of the surface
-    /// @param bits   BitGrid::words of the region; undefined before, all written after.
+    /// @param bits   BitGrid::words of the region; undefined before the call, all written after it.
     virtual void mark(const GpuSurface& surface, const Region& region, std::span<const ChunkPart> parts,
                       gl::Buffer& bits) = 0;
     [[nodiscard]] const gl::ShaderSource& shaders() const { return shaders_; }
 
 private:
-    /// Marks the region in `bits_`, and takes the time.
+    /// Marks the region in `bits_`, and measures the time.
     void mark_timed(const GpuSurface& surface, const Region& region,
                     std::optional<std::span<const std::uint32_t>> subset);
 

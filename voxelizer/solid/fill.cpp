@@ -39,7 +39,7 @@ void visit_inside(Row row, const Visit& visit) {
     }
 }
 
-/// What a row says about one of its voxels.
+/// The vote of a row on one of its voxels.
 struct Verdict {
     bool inside = false;
     bool whole = false;
@@ -166,7 +166,7 @@ void SolidFill::fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const {
 }
 
 void SolidFill::vote_on_slice(const glm::ivec3& low, int z, BitGrid& tile) const {
-    // What rows along one axis say about the slice: all of them, and those that are whole.
+    // The votes of the rows along one axis on the slice: of all rows, and of those that are not doubtful.
     struct Votes {
         BitGrid inside, by_whole;
     };

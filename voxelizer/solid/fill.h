@@ -45,15 +45,15 @@ public:
     /// @param whole         the region that all tiles lie in
     /// @param memory_bytes  what the crossings may take: 4 bytes per row, and 4 per crossing of the rows
     ///                      that are crossed an even number of times
-    /// @throws Error (Fault::memory) if the crossings take more; says what would fit.
+    /// @throws Error (Fault::memory) if the crossings take more; the message says what would fit.
     SolidFill(const Surface& surface, const Region& whole, std::size_t memory_bytes = default_memory_bytes);
 
     /// Sets the bits of voxels that are inside.
     /// @param tile_origin  voxel of the root cube, as Region::origin; the tile lies within `whole`
-    /// @throws Error (Fault::usage) if the tile does not lie within it.
+    /// @throws Error (Fault::usage) if the tile does not lie within `whole`.
     void add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const;
 
-    /// Whether the mesh is closed. Decided by a sum of hashes over its edges, of 128 bits.
+    /// Whether the mesh is closed. Decided by a sum of 128-bit hashes over its edges.
     [[nodiscard]] bool closed() const { return !along_y_; }
     /// Doubtful rows along all three axes, out of row_count() rows.
     [[nodiscard]] std::uint64_t doubtful_rows() const { return doubtful_rows_; }

@@ -24,7 +24,7 @@ class RowCrossings {
 public:
     /// @param axis          0, 1, 2: rows along x, y, z
     /// @param memory_bytes  what the crossings may take
-    /// @throws Error (Fault::memory) before they take more; says what would fit.
+    /// @throws Error (Fault::memory) if they would take more; the message says what would fit.
     RowCrossings(const Surface& surface, const Region& region, int axis, std::size_t memory_bytes);
 
     /// A crossing: the first voxel of the row whose centre lies beyond it, or the row's length.
@@ -33,8 +33,8 @@ public:
         [[nodiscard]] int voxel() const { return int(packed >> 1); }
         [[nodiscard]] int winding() const { return (packed & 1U) != 0 ? -1 : 1; }
     };
-    /// Of the row through a voxel of the region (its coordinate along the axis does not matter), ascending.
-    /// None for an odd row.
+    /// The crossings of the row through a voxel of the region (its coordinate along the axis does not
+    /// matter), ascending. Empty if the row is odd.
     [[nodiscard]] std::span<const Event> row(const glm::ivec3& voxel) const {
         const std::size_t i = row_number(voxel);
         const std::size_t first = i == 0 ? 0 : ends_[i - 1];

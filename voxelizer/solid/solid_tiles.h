@@ -11,21 +11,22 @@
 
 namespace cairn::voxelizer {
 
-/// Adds the inside of closed meshes to the tiles of voxelize_tiles(), and brings those that hold nothing but
-/// inside, in their place in the order.
+/// A sink for voxelize_tiles() that adds the inside of closed meshes to each tile before it goes on to
+/// another sink. Tiles of which only the inside is occupied are inserted in their place in the order.
 class SolidTiles {
 public:
     /// Refers to the fill, which must outlive it.
     SolidTiles(const SolidFill& fill, const Grid& grid, TileSink sink, int tile_side = VOXEL_TILE_SIDE);
 
+    /// Takes the next tile.
     void add(VoxelTile&& tile);
-    /// After the last tile.
+    /// Emits the remaining tiles; to be called after the last add().
     void finish();
 
     [[nodiscard]] std::uint64_t occupied() const { return occupied_; }
 
 private:
-    /// Brings the tiles before that one that hold any inside.
+    /// Emits the tiles before that number of which only the inside is occupied.
     void skip_to(std::int64_t number);
     void emit(VoxelTile&& tile);
 

@@ -12,8 +12,8 @@
 
 namespace cairn::voxelizer {
 
-/// Calls add(corners) for every triangle that takes part in a solid fill, side by side: all but those that an
-/// alpha mask cuts.
+/// Calls add(corners), in parallel, for every triangle that takes part in a solid fill: all triangles but
+/// those that an alpha mask cuts.
 template <typename Add>
 void for_each_triangle(const Surface& surface, const Add& add) {
     const auto is_cut = [&surface](std::uint32_t material) {

@@ -10,10 +10,11 @@
 
 namespace cairn::voxelizer {
 
-/// The rows along an axis whose lines cross one triangle, and where; the arithmetic behind RowCrossings.
+/// The rows along an axis whose lines cross one triangle, and the places where they cross it: the arithmetic
+/// of RowCrossings.
 ///
-/// In half lattice units, so that the centres of voxels are whole numbers at every level: centre i of an axis
-/// is (2 i + 1) * side.
+/// Coordinates are in half lattice units, so that the centres of voxels are whole numbers at every level:
+/// centre i of an axis is (2 i + 1) * side.
 ///
 /// @tparam Int  64 bits for corners within [-2^24, 2^25], 128 for corners within +-2^40.
 template <typename Int>
@@ -42,7 +43,7 @@ public:
         prepare_filter();
     }
 
-    /// +1 or -1; 0: the triangle is parallel to the axis.
+    /// Sign of the crossings, +1 or -1; 0 if the triangle is parallel to the axis.
     [[nodiscard]] int winding() const { return winding_; }
     [[nodiscard]] int first_v() const { return first_v_; }
     [[nodiscard]] int last_v() const { return last_v_; }
@@ -50,7 +51,7 @@ public:
     struct Interval {
         int first, last;
     };
-    /// The rows (u, v) that are crossed, for one v.
+    /// The range of u of the rows (u, v) that are crossed, for one v.
     [[nodiscard]] Interval crossed_u(int v) const {
         Interval out{0, u_last_};
         for (std::size_t i = 0; i < 3; ++i)
@@ -81,8 +82,8 @@ private:
         return std::int64_t(beyond);
     }
 
-    /// The plane in doubles, in voxels, from corner 0, where all is exact but the slopes. Within the triangle
-    /// no term passes its slope times the triangle's extent; a handful of roundings meet.
+    /// Prepares the plane in doubles, in voxels, from corner 0: all values are exact but the slopes. Within
+    /// the triangle no term passes its slope times the triangle's extent, and a handful of roundings add up.
     void prepare_filter() {
         const double unit = 0.5 / double(side_);
         const double along = double(normal_[std::size_t(axis_)]);
@@ -155,7 +156,7 @@ private:
     int axis_, u_, v_;
     std::int64_t side_;
     Corners p_;                  ///< corners, in half lattice units from the region's low corner
-    std::array<Int, 3> normal_;  ///< normal of the corners as they were given, in lattice units
+    std::array<Int, 3> normal_;  ///< normal before corners were swapped, lattice units
     int winding_ = 0;
     int u_last_ = -1, first_v_ = 0, last_v_ = -1;
     bool tie_is_beyond_ = false;

@@ -10,33 +10,35 @@
 
 namespace cairn::voxelizer {
 
-/// A triangle that an alpha mask cuts: the part of it inside a closed voxel is surface where it touches a
-/// closed texel square whose alpha passes the cutoff.
+/// A triangle that an alpha mask cuts: its part inside a closed voxel is surface if the part touches a closed
+/// texel square whose alpha passes the cutoff.
 ///
 /// This is the definition, for the few triangles that shaders leave to the CPU and for the reference; the
-/// shaders' own way is shaders/voxelize/alpha_mask.glsl. A point of the triangle is its three weights. Sides
-/// of the triangle, of the voxel and of a texel, and the cutoff, are each a line that is linear and
-/// homogeneous in the weights, with whole coefficients. They share a point exactly when one of the crossings
-/// of two of them lies on the right side of all.
+/// shaders compute the same by shaders/voxelize/alpha_mask.glsl. A point of the triangle is given by its
+/// three weights. The sides of the triangle, of the voxel and of a texel, and the cutoff, are lines that are
+/// linear and homogeneous in the weights, with whole coefficients. Triangle, voxel and texel share a point
+/// that passes the cutoff exactly if one of the crossings of two of these lines lies on the right side of all
+/// lines.
 class ExactMask {
 public:
     /// @param positions  lattice units, within +-2^40
-    /// @param texels     of all images; must outlive this
+    /// @param texels     texels of all images; must outlive this object
     ExactMask(const std::array<glm::i64vec3, 3>& positions, const std::array<glm::vec2, 3>& texcoords,
               const std::array<std::uint32_t, 3>& colors, const interop::SurfaceMaterial& material,
               std::span<const std::uint32_t> texels);
 
-    /// @param low   corner of the voxel, lattice units
-    /// @param side  of the voxel
+    /// Whether the triangle's part inside a voxel is surface.
+    /// @param low   low corner of the voxel, lattice units
+    /// @param side  side of the voxel, lattice units
     [[nodiscard]] bool touches(const glm::i64vec3& low, std::int64_t side) const;
 
 private:
     [[nodiscard]] std::int64_t alpha_at(std::int64_t column, std::int64_t row) const;
 
     std::array<glm::i64vec3, 3> positions_;
-    std::array<glm::i64vec2, 3> texel_coordinates_;  ///< whole units of a texel's `texel_side_`-th part
+    std::array<glm::i64vec2, 3> texel_coordinates_;  ///< in units of 1 / texel_side_ of a texel
     std::int64_t texel_side_ = 1;
-    glm::i64vec2 period_{0};  ///< whole textures taken off the coordinates
+    glm::i64vec2 period_{0};  ///< whole textures subtracted from the coordinates
     std::array<std::int64_t, 3> alphas_;
     interop::SurfaceMaterial material_;
     std::span<const std::uint32_t> texels_;

@@ -1,5 +1,5 @@
-// The row spans of shaders/voxelize/exact_triangle.glsl, whose comments tell the method; only the integers
-// are wider.
+// The row spans of shaders/voxelize/exact_triangle.glsl, whose comments explain the method, in wider
+// integers.
 #include "voxelizer/surface/far_triangles.h"
 
 #include <algorithm>

@@ -9,9 +9,9 @@
 
 namespace cairn::voxelizer {
 
-/// Marks the triangles that pass the range of the shaders' arithmetic: the same row spans, in 128-bit
+/// Marks far triangles, which pass the range of the shaders' arithmetic, by the same row spans in 128-bit
 /// integers.
-/// @param bits  of the region; marks are added.
+/// @param bits  bits of the region, to which marks are added.
 void mark_far_triangles(std::span<const FarTriangle> triangles,
                         std::span<const interop::SurfaceMaterial> materials,
                         std::span<const std::uint32_t> texels, const Region& region, BitGrid& bits);

@@ -12,13 +12,13 @@
 
 namespace cairn::voxelizer {
 
-/// What moves the vertices of one chunk of a surface: all that a vertex needs at rest, and the weights of a
-/// frame. Numbers refer to the matrices of the moving surface.
+/// The buffers that move the vertices of one chunk of a surface: their data at rest, and the weights of a
+/// frame. Matrices are numbered as in the moving surface.
 class MovingChunk {
 public:
-    /// @param chunk         has `sources`, one item after the other
+    /// @param chunk         must have `sources`, ordered by item
     /// @param first_joints  per skin of the scene, the number of the matrix of its first joint
-    /// @param normals       the chunk's normals move too
+    /// @param normals       whether the chunk's normals move too
     /// @throws Error  Fault::memory when a buffer passes the driver's shader-storage limit.
     MovingChunk(const scenes::Scene& scene, const scenes::Snapshot& snapshot, const SurfaceChunk& chunk,
                 std::span<const std::uint32_t> first_joints, bool normals);
@@ -29,17 +29,17 @@ public:
     /// Starts a frame: weights and the lattice go to the driver, counters to 0.
     void write_frame(const scenes::Scene& scene, const scenes::Pose& pose, const Grid& grid);
     [[nodiscard]] interop::DeformHeader read_header() const;
-    /// Binds SSBO_DEFORM_*, but for the matrices.
+    /// Binds SSBO_DEFORM_*, except for the matrices.
     void bind() const;
     void bind_frame() const { frame_.bind_storage(SSBO_DEFORM_FRAME); }
 
     [[nodiscard]] std::uint32_t vertex_count() const { return vertex_count_; }
-    /// Loop turns that a vertex may take; past DEFORM_TURNS a driver may cut them short.
+    /// Greatest number of loop turns for a vertex; past DEFORM_TURNS a driver may end the loop early.
     [[nodiscard]] std::size_t most_turns() const { return most_turns_; }
 
 private:
-    struct Arrays;  ///< what is on its way to the driver
-    /// Where the weight of a target comes from.
+    struct Arrays;  ///< data to be uploaded
+    /// The place in a Pose of a target's weight.
     struct WeightSource {
         std::size_t node, target;
     };

@@ -24,7 +24,7 @@ struct MovingSurface::Impl {
          const SurfaceOptions& options, const gl::ShaderSource& shaders);
     void move_to(double seconds);
 
-    /// What the snapshot said of an item that no moment changes.
+    /// The fields of an item that are the same at every moment.
     struct MovingItem {
         int node, instance;
         bool skinned;

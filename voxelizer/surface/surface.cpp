@@ -38,7 +38,7 @@ float rounded_texcoord(float coordinate) {
 
 /// Octahedral map (Cigolle et al. 2014). Straight up would be 0, which means "none": it leans by the least
 /// step.
-std::uint32_t packed_normal(const glm::dvec3& normal) {
+std::uint32_t encode_normal(const glm::dvec3& normal) {
     const double sum = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
     if (!(sum > 0.0) || !std::isfinite(sum)) return 0;
     glm::dvec2 e(normal.x / sum, normal.y / sum);
@@ -170,7 +170,7 @@ private:
             if (options_.unplaced) part_.mesh.sources.push_back({item_number_, vertex});
             if (options_.attributes) {
                 const std::uint32_t normal =
-                    has_normals_ ? packed_normal(normal_from_mesh_ * glm::dvec3(item_.normals[vertex])) : 0;
+                    has_normals_ ? encode_normal(normal_from_mesh_ * glm::dvec3(item_.normals[vertex])) : 0;
                 part_.mesh.attributes.push_back({normal, color(vertex), texcoord(vertex)});
             }
         }

@@ -11,7 +11,8 @@
 #include "voxelizer/grid.h"
 
 namespace cairn::interop {
-// What shaders read of a surface, laid out in shaders/interop/. Who only passes surfaces on need not see it.
+// The structures that shaders read, laid out in shaders/interop/. Code that only passes surfaces on does not
+// need their definitions.
 struct SurfaceTriangle;
 struct SurfaceAttributes;
 struct SurfaceMaterial;
@@ -21,8 +22,8 @@ namespace cairn::voxelizer {
 
 /// Where a vertex of a chunk comes from.
 struct SurfaceSource {
-    std::uint32_t item;    ///< into Snapshot::items
-    std::uint32_t vertex;  ///< into Item::positions
+    std::uint32_t item;    ///< index into Snapshot::items
+    std::uint32_t vertex;  ///< index into Item::positions
 };
 
 /// At most SURFACE_CHUNK_TRIANGLES triangles and the vertices they use.
@@ -42,8 +43,9 @@ struct SurfaceChunk {
     ~SurfaceChunk();
 };
 
-/// A triangle that reaches further than 2^24 units past the root cube, whose products pass 53 bits.
-/// Only a grid over given bounds (grid_over()) makes them; they are voxelized on the CPU, as exactly.
+/// A triangle that reaches further than 2^24 units past the root cube, so that products of its coordinates
+/// pass 53 bits. Only a grid over given bounds (grid_over()) has far triangles. They are voxelized on the
+/// CPU, as exactly.
 struct FarTriangle {
     std::array<glm::i64vec3, 3> positions;
     std::array<glm::vec2, 3> texcoords;
@@ -51,25 +53,25 @@ struct FarTriangle {
     std::uint32_t material;
 };
 
-/// The triangles of a snapshot on the lattice of a grid: what every voxelization method, the exact reference
-/// and the brick producer share, so that they speak of the same triangles. Segments and points are degenerate
+/// The triangles of a snapshot on the lattice of a grid. Every voxelization method, the exact reference and
+/// the brick producer share it, so that they see the same triangles. Segments and points are degenerate
 /// triangles. Triangles whose bounding box misses the root cube, and masked ones that no texel can show, are
 /// left out. Vertices go counter-clockwise seen from the front, in mirrored nodes too.
 struct Surface {
     Grid grid;
     std::vector<SurfaceChunk> chunks;
     std::vector<FarTriangle> far_triangles;
-    /// Those that miss the root cube and yet lie before or behind it along an axis (SurfaceOptions::outside).
+    /// Triangles that miss the root cube but lie before or behind it along an axis (SurfaceOptions::outside).
     std::vector<std::array<glm::i64vec3, 3>> outside_triangles;
     std::vector<interop::SurfaceMaterial> materials;  ///< at least one
-    /// RGBA8 of the images that are used, and the masks' counts of passing texels.
+    /// RGBA8 texels of the images that are used, and the masks' counts of passing texels.
     std::vector<std::uint32_t> texels;
     std::uint64_t triangle_count = 0;
-    /// The base colour varies: by textures, vertex colours, or factors that differ.
+    /// Whether the base colour varies: by textures, vertex colours, or factors that differ.
     bool has_color = false;
-    /// Linear: the base colour everywhere, if it does not vary.
+    /// The linear base colour everywhere, if it does not vary.
     glm::vec3 uniform_color{1.0F};
-    /// There is a triangle that its alpha mask cuts, neither wholly shown nor wholly hidden.
+    /// Whether an alpha mask cuts a triangle that it neither wholly shows nor wholly hides.
     bool has_mask = false;
 
     Surface();
@@ -81,21 +83,23 @@ struct Surface {
 };
 
 struct SurfaceOptions {
-    /// SurfaceChunk::attributes too: normals, colours and texture coordinates. The brick producer needs them.
+    /// Fills SurfaceChunk::attributes too: normals, colours and texture coordinates. The brick producer needs
+    /// them.
     bool attributes = false;
-    /// Surface::outside_triangles too. A solid fill needs them.
+    /// Fills Surface::outside_triangles too. A solid fill needs them.
     bool outside = false;
-    /// All triangles, wherever they are, with `sources`, and with positions and normals left 0 for another to
-    /// fill in (MovingSurface).
+    /// Keeps all triangles, wherever they are, with `sources`, and leaves positions and normals 0, for
+    /// MovingSurface to fill in.
     bool unplaced = false;
 };
 
-/// @throws Error  Fault::memory when it would not fit in memory; Fault::input past the lattice's limits.
+/// @throws Error  Fault::memory if the surface would not fit in memory; Fault::input if a vertex lies past
+///                the lattice's limits.
 [[nodiscard]] Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                                     const Grid& grid, const SurfaceOptions& options = {});
 
-/// Carries normals where a matrix carries points; all 0 where the matrix flattens space, and normals have no
-/// image.
+/// The matrix for normals that goes with a matrix for points; all 0 if that matrix flattens space, so that
+/// normals have no image.
 [[nodiscard]] glm::dmat3 normal_from_mesh(const glm::dmat4& world_from_mesh);
 
 /// A surface in the driver's memory.
@@ -115,7 +119,8 @@ struct GpuSurface {
 
     /// Binds SSBO_SURFACE_* for one chunk.
     void bind(std::size_t chunk) const { bind(chunks[chunk]); }
-    void bind(const GpuSurfaceChunk& chunk) const;  ///< one of ours, or other triangles of our materials
+    /// Binds SSBO_SURFACE_* for a chunk of this surface, or for other triangles with the same materials.
+    void bind(const GpuSurfaceChunk& chunk) const;
     [[nodiscard]] std::size_t size_bytes() const;
 };
 

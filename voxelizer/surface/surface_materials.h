@@ -12,29 +12,29 @@
 
 namespace cairn::voxelizer {
 
-/// What an alpha mask leaves of a triangle.
+/// The part of a triangle that an alpha mask leaves.
 enum class Shown : std::uint8_t { whole, cut, nothing };
 
 /// The materials of a snapshot as the shaders read them, with the texels they use.
 ///
-/// Material 0 is white and opaque; each material of the scene follows; then a twin without its mask for each
-/// masked one, which triangles take that are wholly shown.
+/// Material 0 is white and opaque. The scene's materials follow, and then, for each masked one, a twin
+/// without its mask, for triangles that are wholly shown.
 class SurfaceMaterials {
 public:
-    /// @param all_textures  upload every base-colour image in use, not only those of masks.
-    /// @throws Error  Fault::memory when the images hold more texels than 32 bits can number.
+    /// @param all_textures  whether to upload every base-colour image in use, or only those of masks.
+    /// @throws Error  Fault::memory if the images hold more texels than 32 bits can number.
     SurfaceMaterials(const scenes::Scene& scene, const scenes::Snapshot& snapshot, bool all_textures);
 
     [[nodiscard]] bool is_masked(int scene_material) const;
     [[nodiscard]] Shown shown(int scene_material, const std::array<glm::vec2, 3>& texcoords,
                               const std::array<std::uint32_t, 3>& colors) const;
-    /// Number of the material in `materials`.
+    /// Index into `materials`.
     [[nodiscard]] std::uint32_t number(int scene_material, Shown shown) const;
 
     std::vector<interop::SurfaceMaterial> materials;
     std::vector<std::uint32_t> texels;
-    bool has_color = false;         ///< a texture, or factors that differ
-    glm::vec3 uniform_color{1.0F};  ///< the one factor, when has_color is false
+    bool has_color = false;         ///< there is a texture, or factors differ
+    glm::vec3 uniform_color{1.0F};  ///< the one factor, if has_color is false
     bool any_masked = false;
 
 private:
@@ -49,11 +49,12 @@ private:
     void add_twin(std::size_t scene_material);
     /// Counts the texels that pass, from the top left corner of the image (SurfaceMaterial::passing_offset).
     [[nodiscard]] std::uint32_t add_passing_counts(const interop::SurfaceMaterial& material);
-    /// Room for so many more numbers. @throws Error
+    /// Makes room in `texels` for so many more words. @return the first.
+    /// @throws Error  Fault::memory if 32 bits cannot number them.
     std::uint32_t grow_texels(std::size_t count);
 
     std::vector<std::int64_t> image_offsets_;
-    std::vector<Mask> masks_;  ///< one a material of the scene
+    std::vector<Mask> masks_;  ///< one per material of the scene
 };
 
 }  // namespace cairn::voxelizer

@@ -8,9 +8,9 @@
 namespace cairn::voxelizer {
 namespace {
 
-/// What the map and the vector around a list take, in numbers.
+/// Size of a node of the map and of the vector in it, in units of list entries.
 constexpr std::size_t node_cost = 24;
-/// A list that is short enough to read whole rather than to refine.
+/// Length up to which a list is read whole instead of refined.
 constexpr std::size_t short_list = 64;
 
 std::uint64_t key_of(const Cell& cell) {

@@ -24,21 +24,22 @@ struct Cell {
 constexpr int MAX_CELL_LEVEL = 19;
 
 struct TriangleIndexOptions {
-    /// Levels from a cell to its children: 2^level_step of them along each axis. 1 to 3.
+    /// Levels from a cell to its children, 1 to 3. A cell has 2^level_step children along each axis.
     int level_step = 2;
-    /// A cell's list also holds what comes as near as 2^-border_shift of the cell's side. None: no border.
+    /// A cell's list also holds the triangles whose box comes as near to the cell as 2^-border_shift of its
+    /// side. None: no border.
     std::optional<int> border_shift;
-    /// Numbers held (4 bytes each) before the lists are made anew, which costs time, never correctness. None:
-    /// 8 million, or four per triangle if that is more.
+    /// Number of entries (4 bytes each) in all lists past which lists are dropped, and made anew when they
+    /// are needed. It affects time only. None: 8 million, or four per triangle if that is more.
     std::optional<std::size_t> held_limit;
 };
 
-/// Which triangles of a surface may touch a part of the root cube, so that a region deep in a large scene
-/// costs what its own triangles cost. Lists are refined on demand, each from that of the cell around it; the
-/// bounding boxes of the triangles decide.
+/// Finds the triangles of a surface that may touch a part of the root cube, by their bounding boxes, so that
+/// the cost of a region deep in a large scene depends on the region's triangles alone. Lists are made on
+/// demand, each from the list of the cell around it.
 class TriangleIndex {
 public:
-    /// Keeps a copy of what it needs of the surface: a bounding box per triangle.
+    /// Copies a bounding box per triangle; the surface need not outlive the index.
     explicit TriangleIndex(const Surface& surface, const TriangleIndexOptions& options = {});
 
     struct Box {
@@ -46,12 +47,12 @@ public:
         glm::ivec3 high;
     };
 
-    /// Those whose box meets the closed cell and its border: global triangle numbers, ascending. Valid until
-    /// the next call.
-    /// @param cell  its level is a multiple of level_step
+    /// Global numbers, ascending, of the triangles whose box meets the closed cell and its border. Valid
+    /// until the next call.
+    /// @param cell  its level must be a multiple of level_step
     [[nodiscard]] std::span<const std::uint32_t> list(const Cell& cell);
 
-    /// Those whose box meets the closed region, without a border: global triangle numbers, ascending.
+    /// Global numbers, ascending, of the triangles whose box meets the closed region, without a border.
     [[nodiscard]] std::vector<std::uint32_t> triangles_in(const Region& region);
 
     /// Far triangles are not listed: they have no numbers, and every voxelization looks at all of them.
@@ -64,7 +65,7 @@ public:
     [[nodiscard]] const Box& box(std::uint32_t triangle) const { return boxes_[triangle]; }
     [[nodiscard]] std::size_t triangle_count() const { return root_.triangles.size(); }
 
-    /// Entries of lists read since the start: what the answers have cost.
+    /// Number of list entries that have been read since the index was built: the cost of its answers.
     [[nodiscard]] std::uint64_t entries_read() const { return entries_read_; }
 
 private:
@@ -72,19 +73,20 @@ private:
         std::vector<std::uint32_t> triangles;
         bool is_split = false;  ///< all children that are not empty have nodes
     };
-    /// A closed box in lattice units, and its part in the root cube, where cells are.
+    /// A closed box in lattice units, and its part in the root cube, which the cells fill.
     struct Query {
         glm::i64vec3 low, high;
         glm::ivec3 low_inside, high_inside;
         int least_extent;
     };
-    /// Null for an empty cell.
+    /// The node of a cell; null if the cell is empty.
     [[nodiscard]] Node* find(const Cell& cell);
     void split(const Cell& parent, Node& node);
     void gather(const Cell& cell, const Query& query, std::vector<std::uint32_t>& out);
     void gather_listed(const Cell& cell, const Node& node, const Query& query,
                        std::vector<std::uint32_t>& out);
-    /// Between two questions, so that what an answer refers to stays while it is worked out.
+    /// Drops lists if they pass held_limit. Called between two queries, so that no list goes while it is in
+    /// use.
     void drop_if_too_many();
 
     TriangleIndexOptions options_;

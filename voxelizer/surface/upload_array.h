@@ -11,9 +11,9 @@
 
 namespace cairn::voxelizer {
 
-/// A buffer that a shader sees whole.
+/// Uploads values to a buffer that a shader can see whole.
 /// @param limit_bytes  Limits::shader_storage_bytes
-/// @throws Error  Fault::memory when it passes the limit.
+/// @throws Error  Fault::memory if the values pass the limit.
 template <typename T>
 gl::Buffer upload_array(const std::vector<T>& values, const std::string& name, std::size_t limit_bytes) {
     const std::size_t bytes = values.size() * sizeof(T);

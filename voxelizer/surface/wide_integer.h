@@ -6,10 +6,10 @@
 
 namespace cairn::voxelizer {
 
-/// 128 bits: what exact predicates need (GCC and Clang).
+/// An integer of 128 bits, for exact predicates (GCC and Clang).
 __extension__ using Int128 = __int128;
 
-/// A vector of them; glm's own is not made for this type.
+/// A vector of 128-bit integers, for which glm's vectors are not made.
 struct Wide3 {
     Int128 x, y, z;
 };

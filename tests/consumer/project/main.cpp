@@ -11,7 +11,7 @@
 #include <cairn/optics/camera.h>
 #include <cairn/renderer/open_content.h>
 #include <cairn/renderer/renderer.h>
-#include <cairn/scenes/builtin/builtin.h>
+#include <cairn/scenes/load.h>
 #include <cairn/scenes/snapshot.h>
 #include <cairn/version.h>
 #include <cairn/voxelizer/methods/voxelizer.h>

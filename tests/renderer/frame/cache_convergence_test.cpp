@@ -8,7 +8,7 @@
 #include "app/viewer/refinement.h"
 #include "renderer/produce/batch_pace.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/voxel_renderer.h"

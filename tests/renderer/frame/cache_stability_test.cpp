@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "renderer/pool/brick_cache.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
@@ -47,7 +47,7 @@ protected:
                                  layer.format, layer.type, size, &bytes[bytes.size() - std::size_t(size)]);
         }
         glPixelStorei(GL_PACK_ALIGNMENT, 4);
-        const std::size_t mask_bytes = pool.mask_bytes_a_slot();
+        const std::size_t mask_bytes = pool.mask_bytes_per_slot();
         const std::vector<std::uint8_t> masks =
             pool.masks().read_all<std::uint8_t>(mask_bytes, std::size_t(slot) * mask_bytes);
         bytes.insert(bytes.end(), masks.begin(), masks.end());
@@ -69,7 +69,7 @@ protected:
                                 noise(texels * std::size_t(layer.texel_bytes)).data());
         }
         glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-        const std::size_t mask_bytes = pool.mask_bytes_a_slot();
+        const std::size_t mask_bytes = pool.mask_bytes_per_slot();
         glNamedBufferSubData(pool.masks().id(), GLintptr(std::size_t(slot) * mask_bytes),
                              GLsizeiptr(mask_bytes), noise(mask_bytes).data());
     }
@@ -82,7 +82,7 @@ void BrickCacheTest::expect_bricks_back(const BrickPool& pool) {
     BrickCache cache(pool, std::size_t(1) << 20U);
     Random random(8);
     std::vector<std::vector<std::uint8_t>> bricks;
-    std::vector<renderer::Tree::Evicted> evicted;
+    std::vector<renderer::Tree::EvictedBrick> evicted;
     for (int slot = 0; slot < pool.slot_count(); ++slot) {
         scribble(pool, slot, random);
         bricks.push_back(read(pool, slot));
@@ -123,7 +123,7 @@ TEST_P(BrickCacheTest, KeepsWithinItsBytesWhatWasUsedLast) {
     const std::size_t limit = 10 * (slot_bytes(GetParam()) + 200);
     BrickCache cache(pool, limit);
     for (int i = 0; i < 100; ++i) {
-        const renderer::Tree::Evicted evicted{tile(i), 0};
+        const renderer::Tree::EvictedBrick evicted{tile(i), 0};
         cache.store({&evicted, 1});
         EXPECT_TRUE(cache.restore(tile(0), 1)) << "tile 0 is used all the time, " << i;
         EXPECT_LE(cache.size_bytes(), limit);

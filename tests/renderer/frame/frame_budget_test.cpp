@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/voxel_renderer.h"

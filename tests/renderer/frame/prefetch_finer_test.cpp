@@ -6,7 +6,7 @@
 #include "app/viewer/viewer.h"
 #include "base/error.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/voxel_renderer.h"
@@ -43,7 +43,7 @@ protected:
         constexpr int most_calls = 20000;
         std::uint64_t bricks = 0;
         for (calls = 1; calls < most_calls; ++calls) {
-            const renderer::Prefetched done = renderer.prefetch_finer(Milliseconds(budget_ms));
+            const renderer::PrefetchResult done = renderer.prefetch_finer(Milliseconds(budget_ms));
             bricks += done.bricks;
             if (!done.more) return bricks;
         }

@@ -216,11 +216,11 @@ TEST(Windows, NestAndHoldTheEyeWithHalfATileAroundIt) {
                                     glm::dvec3(1.0 / 3.0, 0.75, 0.25)}) {
         for (const int level : {0, 1, 20, 54}) {
             const std::int64_t place = (std::int64_t(1) << level) / 3;
-            const renderer::Place eye{{level, glm::i64vec3(place)}, offset};
+            const renderer::TilePoint eye{{level, glm::i64vec3(place)}, offset};
             const auto windows = renderer::windows_around(shape, eye);
             const double tile = std::ldexp(1.0, WINDOW_TILE_BITS);
             for (std::size_t i = 0; i < windows.size(); ++i) {
-                const glm::dvec3 here = renderer::place_in(windows[i], shape, eye);
+                const glm::dvec3 here = renderer::point_in_window(windows[i], shape, eye);
                 for (int axis = 0; axis < 3 && windows[i].level > 0; ++axis) {
                     EXPECT_GE(here[axis], 0.5 * tile) << "level " << windows[i].level;
                     EXPECT_LE(here[axis], 1.5 * tile) << "level " << windows[i].level;
@@ -241,14 +241,14 @@ TEST(Windows, EmptyOnesAroundTheEyeAreLeftOut) {
     const renderer::TreeShape shape = renderer::make_deep_tree_shape(2, 16, 54);
     renderer::FractalOracle oracle(shape);
     // In the middle of the empty octant of a tile of level 10, a quarter of its side from what is not empty.
-    const renderer::Place eye{{10, glm::i64vec3(0)}, glm::dvec3(0.75)};
+    const renderer::TilePoint eye{{10, glm::i64vec3(0)}, glm::dvec3(0.75)};
     auto windows = renderer::windows_around(shape, eye);
     EXPECT_EQ(windows.front().level, 54 - shape.levels_in_window());
     renderer::drop_empty(windows, shape, oracle);
     EXPECT_EQ(windows.front().level, 11);
     EXPECT_EQ(windows.back().level, 0);
     // On the set, none is.
-    const renderer::Place touching{{10, glm::i64vec3(0)}, glm::dvec3(0.25)};
+    const renderer::TilePoint touching{{10, glm::i64vec3(0)}, glm::dvec3(0.25)};
     auto all = renderer::windows_around(shape, touching);
     const std::size_t count = all.size();
     renderer::drop_empty(all, shape, oracle);

@@ -86,7 +86,8 @@ protected:
     static constexpr int slots = 20;
 
     /// A pass of such rays.
-    QueryBuffer::Told pass(QueryBuffer& buffer, std::vector<Asked>& asked, Round round, bool is_progressive) {
+    QueryBuffer::Reports pass(QueryBuffer& buffer, std::vector<Asked>& asked, Round round,
+                              bool is_progressive) {
         gl::Program& program = is_progressive ? progressive_ : patient_;
         if (program.id() == 0) {
             gl::Defines defines = renderer::defines(
@@ -155,10 +156,10 @@ TEST_F(QueryBufferTest, TellsEachQueryOnceAndHowManyRaysAsked) {
         SCOPED_TRACE(fmt::format("round {}", number));
         const bool is_progressive = number % 3 != 0;
         std::vector<Asked> asked = random_rays(400, is_progressive ? 3 : 2, number);
-        const QueryBuffer::Told told = pass(buffer, asked, Round{number}, is_progressive);
+        const QueryBuffer::Reports reports = pass(buffer, asked, Round{number}, is_progressive);
         const auto expected = count(asked);
-        EXPECT_EQ(told.queries.size(), expected.size());
-        for (const TileQuery& query : told.queries) {
+        EXPECT_EQ(reports.queries.size(), expected.size());
+        for (const TileQuery& query : reports.queries) {
             const auto found = expected.find({query.entry, query.kind});
             ASSERT_NE(found, expected.end()) << "nobody asked for entry " << query.entry;
             EXPECT_EQ(query.rays, is_progressive ? found->second : 0U) << query.entry;
@@ -167,13 +168,13 @@ TEST_F(QueryBufferTest, TellsEachQueryOnceAndHowManyRaysAsked) {
         for (const Asked& ray : asked)
             used.insert(ray.slot);
         ever_used.insert(used.begin(), used.end());
-        ASSERT_EQ(told.brick_stamps.size(), std::size_t(slots));
+        ASSERT_EQ(reports.brick_stamps.size(), std::size_t(slots));
         for (std::uint32_t slot = 0; slot < slots; ++slot) {
             if (used.contains(slot)) {
-                EXPECT_EQ(told.brick_stamps[slot], number);
+                EXPECT_EQ(reports.brick_stamps[slot], number);
             } else {
-                EXPECT_LT(told.brick_stamps[slot], number);
-                EXPECT_EQ(told.brick_stamps[slot] != 0, ever_used.contains(slot));
+                EXPECT_LT(reports.brick_stamps[slot], number);
+                EXPECT_EQ(reports.brick_stamps[slot] != 0, ever_used.contains(slot));
             }
         }
     }
@@ -184,15 +185,15 @@ TEST_F(QueryBufferTest, WithoutRoomOneOfEachRankIsStillKnown) {
     for (unsigned seed = 1; seed <= 4; ++seed) {
         SCOPED_TRACE(fmt::format("seed {}", seed));
         std::vector<Asked> asked = random_rays(300, 2, seed);
-        const QueryBuffer::Told told = pass(buffer, asked, Round{seed}, false);
+        const QueryBuffer::Reports reports = pass(buffer, asked, Round{seed}, false);
         const auto expected = count(asked);
         std::set<std::uint32_t> ranks;
-        for (const TileQuery& query : told.queries) {
+        for (const TileQuery& query : reports.queries) {
             EXPECT_TRUE(expected.contains({query.entry, query.kind})) << query.entry;
             ranks.insert(query.kind == QueryKind::brick ? QUERY_RANK_BRICK : query.entry % 4);
         }
         EXPECT_EQ(ranks.size(), 5U) << "four levels of children, and bricks";
-        EXPECT_LE(told.queries.size(), 2U + 5U);
+        EXPECT_LE(reports.queries.size(), 2U + 5U);
         std::vector<Asked> one(1, asked.front());
         EXPECT_EQ(pass(buffer, one, Round{seed}, false).queries.size(), 1U)
             << "the last pass was not forgotten";

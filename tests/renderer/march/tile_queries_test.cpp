@@ -14,7 +14,7 @@
 #include "renderer/produce/surface_content.h"
 #include "renderer/produce/tile_cache.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "shaders/interop/march.h"
 #include "shaders/interop/tile_query.h"
@@ -88,9 +88,9 @@ TEST_F(TileBlocksTest, EachBlockKeepsTheFirstFourDifferentTiles) {
                         }
             std::sort(queries.begin(), queries.end());
             queries.erase(std::unique(queries.begin(), queries.end()), queries.end());
-            const renderer::TileBlocks::Told told = blocks.reduce();
-            EXPECT_EQ(told.queries, queries);
-            EXPECT_EQ(told.slots, slots);
+            const renderer::TileBlocks::Reports reduced = blocks.reduce();
+            EXPECT_EQ(reduced.queries, queries);
+            EXPECT_EQ(reduced.slots, slots);
             blocks.begin_pass();
             EXPECT_TRUE(blocks.reduce().queries.empty()) << "the last pass was not forgotten";
         }
@@ -170,11 +170,11 @@ TEST_F(UrgentQueries, MostUrgentIsKnownThoughThereIsRoomForOneAlone) {
             [&](const TileQuery& a, const TileQuery& b) { return scenery.urgency(a) < scenery.urgency(b); }));
         mixed += !std::get<0>(least) && least != most ? 1 : 0;
         for (renderer::Marcher* lossy : {&few, &blocks}) {
-            const renderer::PassResult told = scenery.first_pass(*lossy);
-            EXPECT_EQ(scenery.most_urgent(told.queries), most);
-            for (const TileQuery& query : told.queries)
+            const renderer::PassResult reports = scenery.first_pass(*lossy);
+            EXPECT_EQ(scenery.most_urgent(reports.queries), most);
+            for (const TileQuery& query : reports.queries)
                 EXPECT_EQ(std::count(asked.queries.begin(), asked.queries.end(), query), 1) << query.entry;
-            EXPECT_EQ(told.waiting_primary, asked.waiting_primary);
+            EXPECT_EQ(reports.waiting_primary, asked.waiting_primary);
         }
         scenery.round_ = scenery.round_.next();
         scenery.cache_.begin_round(scenery.round_, asked.brick_stamps);

@@ -202,7 +202,7 @@ TEST_F(RayTest, FirstVoxelInAFineTreeIsTheOneOfAnExactWalk) {
 
 /// A place in the empty octant of a random tile that is not empty.
 struct DeepEye {
-    renderer::Place place;
+    renderer::TilePoint place;
     WideVector exact;  // in 2^-60 of the root cube
 };
 

@@ -7,7 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "reference/image.h"
-#include "scenes/builtin/builtin.h"
+#include "renderer/mesh/mix.h"
+#include "scenes/load.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_mix_pictures.h"
 #include "tests/support/mesh_rays.h"

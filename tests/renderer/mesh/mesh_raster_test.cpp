@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "reference/image.h"
-#include "scenes/builtin/builtin.h"
 #include "scenes/load.h"
 #include "shaders/interop/march.h"
 #include "shaders/interop/mesh.h"
@@ -20,15 +19,15 @@
 namespace cairn::test {
 namespace {
 
-using renderer::MarchSpace;
 using renderer::MeshRaster;
 using renderer::MeshSpan;
 using renderer::MeshSurface;
 using renderer::View;
+using renderer::ViewSpace;
 
 /// The camera as the marcher gets it: in the units and relative to the origin of `space`, with rays that
 /// start after `skipped` units.
-interop::MarchView march_view(const View& view, const MarchSpace& space, double skipped = 0.0) {
+interop::MarchView march_view(const View& view, const ViewSpace& space, double skipped = 0.0) {
     const glm::dvec3 forward = glm::normalize(view.camera.target - view.camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, view.camera.up));
     const glm::dvec3 up = glm::cross(right, forward);
@@ -84,7 +83,7 @@ TEST_P(MeshRasterEyes, NearestDistanceIsThatOfTheRayAndThePlane) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     const std::vector<WorldTriangle> triangles = world_triangles(snapshot);
     const View view = view_of(GetParam());
-    const MarchSpace space{{-2.5, -1.0, -2.2}, 0.01};
+    const ViewSpace space{{-2.5, -1.0, -2.2}, 0.01};
     MeshRaster mesh(scene, snapshot);
     const std::vector<float> nearest =
         read_nearest(mesh.draw_surface(march_view(view, space), space, 0), view.size.width);
@@ -116,7 +115,7 @@ TEST_P(MeshRasterEyes, SpanIsThatOfTheFirstAndTheLastFace) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     const std::vector<WorldTriangle> triangles = world_triangles(snapshot);
     const View view = view_of(GetParam());
-    const MarchSpace space{{-2.5, -1.0, -2.2}, 0.01};
+    const ViewSpace space{{-2.5, -1.0, -2.2}, 0.01};
     MeshRaster mesh(scene, snapshot);
     const MeshSpan drawn = mesh.draw_span(march_view(view, space), space, 0);
     const auto spans = read<glm::vec2>(drawn.span, view.size.width, drawn.rows, GL_RG, GL_FLOAT);
@@ -161,7 +160,7 @@ struct Disagreement {
 Disagreement against_embree(const scenes::Scene& scene, const View& view) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     const double size = glm::length(snapshot.bounds.high - snapshot.bounds.low);
-    const MarchSpace space{snapshot.bounds.low, size / 512.0};
+    const ViewSpace space{snapshot.bounds.low, size / 512.0};
     MeshRaster mesh(scene, snapshot);
     const std::vector<float> nearest =
         read_nearest(mesh.draw_surface(march_view(view, space), space, 0), view.size.width);
@@ -227,8 +226,8 @@ TEST_F(MeshRasterTest, AMillionUnitsFromTheOriginChangesNothing) {
     View view = view_of(eyes[0]);
     MeshRaster near_mesh(near_scene, scenes::take_snapshot(near_scene));
     MeshRaster far_mesh(far_scene, scenes::take_snapshot(far_scene));
-    const MarchSpace near_space{{-2.5, -1.0, -2.2}, 0.01};
-    const MarchSpace far_space{near_space.origin + away, 0.01};
+    const ViewSpace near_space{{-2.5, -1.0, -2.2}, 0.01};
+    const ViewSpace far_space{near_space.origin + away, 0.01};
     const interop::MarchView marched = march_view(view, near_space);
     const std::vector<float> here =
         read_nearest(near_mesh.draw_surface(marched, near_space, 0), view.size.width);
@@ -245,7 +244,7 @@ TEST_F(MeshRasterTest, ANarrowLensFarAwaySeesDistancesFromWhereItsRaysStart) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     const double distance = 1e5;
     View view = view_of({"", {0.0, 1.0, distance}, {0.0, 1.0, 0.0}, 2.0 * std::atan(2.0 / distance)});
-    const MarchSpace space{{-2.5, -1.5, -2.5}, 0.01};
+    const ViewSpace space{{-2.5, -1.5, -2.5}, 0.01};
     MeshRaster mesh(scene, snapshot);
     const double skipped = (distance - 10.0) / space.unit;
     const interop::MarchView marched = march_view(view, space, skipped);
@@ -273,7 +272,7 @@ TEST_F(MeshRasterTest, RowsDrawnApartAreThoseOfOnePicture) {
     const scenes::Scene scene = sheet(glm::vec4(1.0F));
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     View view = view_of({"", {0.2, 1.0, 1.3}, {0.0, 0.0, 0.0}, 0.9}, 16384, 300);
-    const MarchSpace space{{-1.0, -1.0, -1.0}, 0.01};
+    const ViewSpace space{{-1.0, -1.0, -1.0}, 0.01};
     MeshRaster mesh(scene, snapshot);
     const interop::MarchView marched = march_view(view, space);
     const int border = MESH_STRIP_PIXELS / 16384;
@@ -308,7 +307,7 @@ TEST_F(MeshRasterTest, RowsDrawnApartAreThoseOfOnePicture) {
 TEST_F(MeshRasterTest, BothSidesAreSeenAndThePlaneFacesTheEye) {
     const scenes::Scene scene = sheet(glm::vec4(0.5F, 0.25F, 0.125F, 1.0F));
     MeshRaster mesh(scene, scenes::take_snapshot(scene));
-    const MarchSpace space{{-1.0, -1.0, -1.0}, 0.01};
+    const ViewSpace space{{-1.0, -1.0, -1.0}, 0.01};
     for (const double side : {1.0, -1.0}) {
         View view = view_of({"", {0.1, 2.0 * side, 0.3}, {0.0, 0.0, 0.0}, 0.5}, 21, 21);
         const MeshSurface drawn = mesh.draw_surface(march_view(view, space), space, 0);
@@ -327,7 +326,7 @@ TEST_F(MeshRasterTest, AMeshOfNothingIsNowhere) {
     scene.scenes.emplace_back();
     MeshRaster mesh(scene, scenes::take_snapshot(scene));
     const View view = view_of(eyes[0], 33, 17);
-    const MarchSpace space;
+    const ViewSpace space;
     for (const float t : read_nearest(mesh.draw_surface(march_view(view, space), space, 0), 33))
         ASSERT_EQ(t, float(MESH_MISS));
 }

@@ -1,4 +1,6 @@
 // The brick pool: never more bytes than asked for, never a slot that overlaps another.
+#include "renderer/pool/brick_pool.h"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

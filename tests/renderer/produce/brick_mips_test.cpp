@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "renderer/pool/brick_pool.h"
 #include "shaders/interop/pool.h"
 #include "shaders/interop/surface.h"
 #include "tests/support/gl_fixture.h"

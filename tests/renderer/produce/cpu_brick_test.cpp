@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "renderer/pool/brick_pool.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/produced_brick.h"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "renderer/pool/brick_pool.h"
 #include "renderer/produce/surface_oracle.h"
 #include "renderer/produce/tile_lists.h"
 #include "shaders/interop/pool.h"
@@ -154,7 +155,7 @@ TEST_P(InexactShapedBricks, TileIsToldConstantExactlyWhenItHoldsNothing) {
     for (int i = 0; i < 12; ++i)
         requests.push_back({tile_near(random, shape(), triangles, std::min(2, shape().max_level)), i});
     const BrickPool pool(shape(), false, 12 * slot_bytes(shape().m, false));
-    const std::vector<Produced> produced = producer.produce(requests, pool);
+    const std::vector<ProducedTile> produced = producer.produce(requests, pool);
     ASSERT_EQ(produced.size(), requests.size());
     int empty = 0;
     for (std::size_t i = 0; i < requests.size(); ++i) {

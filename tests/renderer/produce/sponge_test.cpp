@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "renderer/open_content.h"
+#include "renderer/pool/brick_pool.h"
 #include "renderer/produce/fractal_content.h"
 #include "renderer/renderer.h"
 #include "tests/support/gl_fixture.h"

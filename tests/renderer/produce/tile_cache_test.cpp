@@ -236,7 +236,7 @@ TEST_F(TileCacheTest, AheadNothingThatIsKeptLosesItsPlace) {
     next_round();
     cache.keep_since(frame);
     const Clock::time_point far = Clock::now() + std::chrono::hours(1);
-    const TileCache::Budget ahead{.deadline = far, .is_ahead = true};
+    const TileCache::Budget ahead{.deadline = far, .is_prefetch = true};
     // One free slot, and one whose brick is older than the frame.
     EXPECT_EQ(cache.answer_until(for_bricks({level1[2], level1[3], level1[4]}), ahead).bricks, 2U);
     EXPECT_TRUE(has_brick(level1[1]));

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "renderer/pool/brick_pool.h"
 #include "renderer/produce/dense_field.h"
 #include "renderer/produce/made_fields.h"
 #include "renderer/produce/volume_content.h"
@@ -186,7 +187,7 @@ TEST_F(VolumeBricks, OfOneValueAreCalledConstantAndHaveTheirMean) {
     const BrickRequest requests[] = {{{shape.tree.max_level, {8, 8, 8}}, 0},   // within
                                      {{shape.tree.max_level, {0, 0, 0}}, 1},   // outside
                                      {{shape.tree.max_level, {8, 8, 0}}, 2}};  // across its surface
-    const std::vector<Produced> produced = content.producer().produce(requests, pool);
+    const std::vector<ProducedTile> produced = content.producer().produce(requests, pool);
     ASSERT_EQ(produced.size(), 3U);
     EXPECT_TRUE(produced[0].constant);
     EXPECT_EQ(produced[0].mean.x, 255);

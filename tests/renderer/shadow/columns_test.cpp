@@ -14,8 +14,8 @@
 #include "base/error.h"
 #include "gl/handle.h"
 #include "gl/program.h"
-#include "renderer/shadow/column_mask.h"
 #include "renderer/shadow/column_pyramid.h"
+#include "renderer/shadow/shadow_base.h"
 #include "tests/support/gl_fixture.h"
 #include "voxelizer/bit_grid.h"
 

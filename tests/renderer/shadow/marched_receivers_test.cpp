@@ -9,7 +9,7 @@
 
 #include "reference/image.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "scenes/transform.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/test_scenes.h"

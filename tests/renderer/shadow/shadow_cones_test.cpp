@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/square_over_floor.h"
 #include "tests/support/voxel_renderer.h"

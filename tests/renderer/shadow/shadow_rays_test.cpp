@@ -9,8 +9,9 @@
 
 #include "base/error.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/renderer.h"
-#include "scenes/builtin/builtin.h"
+#include "scenes/load.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_rays.h"
 #include "tests/support/test_scenes.h"

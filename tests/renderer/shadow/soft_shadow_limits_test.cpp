@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "reference/area_light.h"
 #include "reference/image.h"
+#include "reference/shadow_truth.h"
 #include "renderer/shadow/map_shadows.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/soft_shadow_scene.h"

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "reference/area_light.h"
+#include "reference/shadow_truth.h"
 #include "shaders/interop/shadow_map.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/soft_shadow_scene.h"

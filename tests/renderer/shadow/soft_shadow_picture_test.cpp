@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "reference/area_light.h"
 #include "reference/image.h"
+#include "reference/shadow_truth.h"
 #include "renderer/shadow/map_shadows.h"
 #include "scenes/load.h"
 #include "tests/support/gl_fixture.h"

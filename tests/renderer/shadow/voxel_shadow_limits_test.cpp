@@ -10,9 +10,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "reference/area_light.h"
 #include "reference/image.h"
+#include "reference/shadow_truth.h"
 #include "renderer/mesh/mesh_raster.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/renderer.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_rays.h"

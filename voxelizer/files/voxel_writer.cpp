@@ -1,4 +1,4 @@
-#include "voxelizer/files/voxel_files.h"
+#include "voxelizer/files/voxel_writer.h"
 
 #include <algorithm>
 #include <array>

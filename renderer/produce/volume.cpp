@@ -1,6 +1,6 @@
 // Pre-integrated transfer functions: Engel, Kraus and Ertl 2001, "High-quality pre-integrated volume
 // rendering using hardware-accelerated pixel shading", sections 3 and 3.2.
-#include "renderer/produce/transfer_function.h"
+#include "renderer/produce/volume.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace cairn::renderer {
 namespace {
 
 static_assert(density_steps == DENSITY_STEPS && volume_most_steps == VOLUME_MOST_STEPS,
-              "the shaders tell other densities apart");
+              "the shaders distinguish other densities");
 
 constexpr double step = 1.0 / (DENSITY_STEPS - 1);
 
@@ -22,7 +22,7 @@ constexpr double step = 1.0 / (DENSITY_STEPS - 1);
     throw Error(Fault::usage, "transfer function", what, way_out);
 }
 
-void check(const std::vector<ControlPoint>& points) {
+void check_points(const std::vector<ControlPoint>& points) {
     if (points.empty()) fail("it has no control points", "give it at least one");
     double last = 0.0;
     for (const ControlPoint& point : points) {
@@ -61,7 +61,7 @@ glm::dvec4 between(const std::vector<ControlPoint>& points, double value) {
 }  // namespace
 
 TransferFunction::TransferFunction(const std::vector<ControlPoint>& points) {
-    check(points);
+    check_points(points);
     for (std::size_t i = 0; i < optics_.size(); ++i)
         optics_[i] = between(points, double(i) * step);
     for (std::size_t i = 1; i < optics_.size(); ++i)
