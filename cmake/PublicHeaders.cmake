@@ -18,6 +18,7 @@ set(cairn_public_headers
   reference/shadow_truth.h
   renderer/frame/frame_statistics.h
   renderer/march/march_options.h
+  renderer/mesh/mix.h
   renderer/open_content.h
   renderer/pool/tree_shape.h
   renderer/produce/content.h

@@ -10,6 +10,7 @@
 #include "optics/image.h"
 #include "renderer/frame/frame_statistics.h"
 #include "renderer/march/march_options.h"
+#include "renderer/mesh/mix.h"
 #include "renderer/pool/tree_shape.h"
 #include "renderer/produce/content.h"
 #include "renderer/view/view.h"
@@ -17,7 +18,6 @@
 namespace cairn::renderer {
 
 class FrameLoop;
-struct Mix;  // renderer/mesh/mix.h
 
 /// How a renderer works. No picture depends on it. The shape of the tree belongs to the content
 /// (TreeOptions).

@@ -117,8 +117,7 @@ std::shared_ptr<renderer::MeshRaster> load_mesh(const std::string& scene, const 
         input.trust_paths = options.common.scene.trust_paths;
     }
     const SceneInput loaded = load_input(input, options.common.report.quiet);
-    return std::make_shared<renderer::MeshRaster>(loaded.scene, loaded.snapshot,
-                                                  options.common.driver.shaders);
+    return renderer::make_mesh_raster(loaded.scene, loaded.snapshot, options.common.driver.shaders);
 }
 
 renderer::Mix load_mix(const Options& options, Report& report) {

@@ -13,6 +13,7 @@
 #include "gl/handle.h"
 #include "gl/program_family.h"
 #include "renderer/mesh/mesh_targets.h"
+#include "renderer/mesh/mix.h"
 #include "shaders/interop/grid.h"
 #include "shaders/interop/mesh.h"
 #include "shaders/interop/surface.h"
@@ -284,6 +285,11 @@ MeshRaster::MeshRaster(const voxelizer::GpuSurface& surface, const voxelizer::Gr
 MeshRaster::MeshRaster(MeshRaster&&) noexcept = default;
 MeshRaster& MeshRaster::operator=(MeshRaster&&) noexcept = default;
 MeshRaster::~MeshRaster() = default;
+
+std::shared_ptr<MeshRaster> make_mesh_raster(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
+                                             const gl::ShaderSource& shaders) {
+    return std::make_shared<MeshRaster>(scene, snapshot, shaders);
+}
 
 void MeshRaster::surface_moved() {
     glMemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);

@@ -2,9 +2,19 @@
 
 #include <memory>
 
+#include "gl/shader_source.h"
+#include "scenes/scene.h"
+#include "scenes/snapshot.h"
+
 namespace cairn::renderer {
 
 class MeshRaster;
+
+/// A scene as triangles on the GPU, for a Mix. Lines and points of the scene are not drawn. Needs a current
+/// context.
+[[nodiscard]] std::shared_ptr<MeshRaster> make_mesh_raster(const scenes::Scene& scene,
+                                                           const scenes::Snapshot& snapshot,
+                                                           const gl::ShaderSource& shaders = {});
 
 /// What is drawn as triangles beside the voxels (renderer/mesh/mesh_raster.h), in the same world.
 struct Mix {
