@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-preset=test
+preset="test"
 if [[ ${1:-} == --preset ]]; then
   preset=${2:?"--preset takes the name of a preset of CMakePresets.json"}
   shift 2
