@@ -6,6 +6,9 @@ scratch=$(mktemp -d)
 server=
 clean_up() {
   if [ -n "$server" ]; then
+    # A server that ends removes the socket of its display, which by then may be that of another that has just started there.
+    exec 9<"$0"
+    flock 9
     kill "$server" 2>/dev/null || true
     wait "$server" 2>/dev/null || true
   fi
