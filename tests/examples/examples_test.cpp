@@ -144,7 +144,8 @@ TEST_F(Examples, OwnProducerShowsItsFormula) {
 
 #ifdef CAIRN_WITH_XVFB
 TEST_F(Examples, InsideGlShowsThePictureBehindTheProgramsTriangle) {
-    run("inside_gl builtin:knot " + file("inside.ppm"), CAIRN_WITH_XVFB);
+    // GLX unloads its driver before the end, so a leak check cannot tell its leftovers from ours.
+    run("inside_gl builtin:knot " + file("inside.ppm"), "ASAN_OPTIONS=detect_leaks=0 " CAIRN_WITH_XVFB);
     const Picture shown = read_ppm(file("inside.ppm"));
     renderer::View view;
     view.size = {320, 240};
