@@ -305,9 +305,6 @@ TEST(AppVoxelize, VoxelSizeIsTheSizeAsked) {
 }
 
 TEST(AppVoxelize, MemoryDoesNotGrowWithTheGrid) {
-#ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP() << "the memory of the address sanitizer counts too";
-#endif
     // The bits of 2048^3 voxels alone are 1 GiB.
     const Json figures = cairn_json({"voxelize", "builtin:spheres", "-r", "2048"});
     EXPECT_GT(figures["occupied"], 10'000'000);
