@@ -14,7 +14,6 @@
 #define SSBO_DEFORM_MATRICES 6    // double[12] each: four columns of three
 #define SSBO_DEFORM_FRAME 7       // DeformHeader, then DeformTarget
 
-#define DEFORM_GROUP 64
 #define DEFORM_NONE 4294967295u
 // Greatest number of morph targets and influences of a vertex, which are turns of a loop. Past it, the CPU
 // deforms the surface.

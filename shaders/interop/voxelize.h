@@ -19,7 +19,6 @@
 // queues, and are shared by so many threads that each thread has about VOXEL_THREAD_ROWS rows.
 #define VOXEL_SMALL_ROWS 64
 #define VOXEL_THREAD_ROWS 64
-#define VOXEL_GROUP 64
 // The first of VOXEL_SHARED_CLASSES queues. A triangle of class c is shared by VOXEL_SHARED_LEAST *
 // VOXEL_SHARED_FACTOR^c threads; one of the last class, by as many as the largest triangle of the region may
 // need.

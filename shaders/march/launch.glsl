@@ -1,12 +1,10 @@
 // Gives each thread the primary ray of a pixel, with its start and end: in the first pass the pixels of all
 // blocks that may see anything, in later passes the pixels whose rays wait.
 #include "interop/march.h"
-#include "interop/threads.h"
 #if WITH_PROXY
 #include "mesh/proxy_span.glsl"
 #endif
 
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BLOCK_STARTS) readonly buffer BlockStartBlock { BlockStart block_starts[]; };

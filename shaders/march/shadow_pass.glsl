@@ -1,8 +1,6 @@
 // One pass of shadow rays that march: a thread takes up a pixel that waits, sends the pixel's rays on, and
 // leaves the pixel to the next pass if a ray must wait again.
 #include "interop/march.h"
-#include "interop/threads.h"
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 #include "march/shadow_rays.glsl"
 

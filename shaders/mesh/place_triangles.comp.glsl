@@ -1,10 +1,7 @@
 // One thread is one triangle of a batch: it computes the triangle's plane and coordinates in this view.
 #include "interop/mesh.h"
-#include "interop/threads.h"
 #include "mesh/mesh_view.glsl"
 #include "voxelize/surface.glsl"
-
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_MESH_TRIANGLES) restrict writeonly buffer MeshTriangleBlock {

@@ -1,10 +1,7 @@
 // One thread is one voxel of a new brick of the fractal, border included: it computes coverage and normal.
 #include "interop/produce.h"
-#include "interop/threads.h"
 #include "produce/fractal.glsl"
 #include "pool/brick_normals.glsl"
-
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(r8, binding = IMAGE_BRICK_COLOR) writeonly uniform image3D brick_color;

@@ -1,11 +1,8 @@
 // One thread is one word of a new brick's masks. Only occupied tiles have bricks, so the masks are the same
 // in all bricks.
 #include "interop/produce.h"
-#include "interop/threads.h"
 #include "produce/fractal.glsl"
 #include "pool/brick_masks.glsl"
-
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_MASKS) writeonly buffer MaskBlock { uvec2 brick_masks[]; };

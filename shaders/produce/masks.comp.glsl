@@ -2,11 +2,8 @@
 // which rays skip empty cells. There is one dispatch per mip, the finest first, because a voxel is occupied
 // if a finer voxel in it is; the samples of an alpha mask in the coarse voxel alone might miss that.
 #include "interop/produce.h"
-#include "interop/threads.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
-
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };

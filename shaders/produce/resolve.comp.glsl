@@ -1,11 +1,8 @@
 // One thread is one voxel of a mip of a new brick, border included: it turns the gathered sums into the
 // pool's texels, and clears them for the next batch.
 #include "interop/produce.h"
-#include "interop/threads.h"
 #include "produce/scratch.glsl"
 #include "produce/two_normals.glsl"
-
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 #if HAS_COLOR

@@ -3,7 +3,6 @@
 // triangle's attributes to them.
 #include "interop/produce.h"
 #include "interop/surface.h"
-#include "interop/threads.h"
 #include "produce/scratch.glsl"
 #if CELL_BASE == 3
 #define ANY_VOXEL_SIDE 1
@@ -16,8 +15,6 @@
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_attributes.glsl"
 #include "voxelize/surface_color.glsl"
-
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_PAIRS) readonly buffer PairBlock { BrickPair pairs[]; };

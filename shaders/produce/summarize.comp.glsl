@@ -1,11 +1,8 @@
 // One thread is one summary word of a new brick: one bit for each of 64 blocks, whether a voxel of any mip is
 // occupied in it. With FINDS_EMPTY, for oracles that are not exact, it also marks tiles that are not empty.
 #include "interop/produce.h"
-#include "interop/threads.h"
 #include "produce/scratch.glsl"
 #include "pool/brick_masks.glsl"
-
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };

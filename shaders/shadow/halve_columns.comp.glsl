@@ -1,10 +1,7 @@
 // One thread is one texel of a coarser level of the pyramid: the OR of the texels of its 2 x 2 finer columns
 // (Forest et al. 2009, section 2.3, Figure 4(a)). Columns keep all their bits.
 #include "interop/columns.h"
-#include "interop/threads.h"
 #include "shadow/columns.glsl"
-
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 
 // Texels of the levels from level 1 on.

@@ -3,14 +3,12 @@
 // them, and goes on in the next pass.
 #include "interop/columns.h"
 #include "interop/march.h"
-#include "interop/threads.h"
 
 layout(std140, binding = UBO_VIEW) uniform ViewBlock { MarchView view; };
 layout(std430, binding = SSBO_COLUMN_COUNTS) buffer CountBlock { uint paused; };
 
 #define WITH_MESHES 1
 #define SHADOW_CONES 0
-#define GROUP_SIZE THREADS_PER_GROUP
 #include "common/thread.glsl"
 #include "shadow/trace_columns.glsl"
 #include "march/self_shadow.glsl"

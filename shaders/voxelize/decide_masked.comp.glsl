@@ -3,8 +3,6 @@
 #include "voxelize/alpha_mask.glsl"
 #include "voxelize/bits.glsl"
 #include "voxelize/candidates.glsl"
-
-#define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
 uniform int voxel_shift;

@@ -6,8 +6,6 @@
 #include "interop/deform.h"
 #include "interop/grid.h"
 #include "interop/surface.h"
-
-#define GROUP_SIZE DEFORM_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_SURFACE_POSITIONS) restrict writeonly buffer PositionBlock { int positions[]; };

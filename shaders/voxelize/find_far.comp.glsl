@@ -3,8 +3,6 @@
 #include "interop/deform.h"
 #include "interop/grid.h"
 #include "voxelize/surface.glsl"
-
-#define GROUP_SIZE DEFORM_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_DEFORM_FRAME) restrict buffer FrameBlock { DeformHeader header; };

@@ -12,8 +12,6 @@
 #include "voxelize/attribute_sums.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_color.glsl"
-
-#define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
 uniform ivec3 region_origin;

@@ -3,8 +3,6 @@
 // reads through a buffer texture, four words at a time if the rows allow it, because software drivers load
 // from storage buffers lane by lane.
 #include "interop/voxelize.h"
-
-#define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
 layout(binding = TEXTURE_HALVE_FINE) uniform usamplerBuffer fine_bits;  // with WIDE four words per texel, else one

@@ -7,8 +7,6 @@
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
 #include "voxelize/surface.glsl"
-
-#define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
 uniform int voxel_shift;

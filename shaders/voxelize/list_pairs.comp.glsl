@@ -10,8 +10,6 @@
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/queue.glsl"
 #include "voxelize/surface.glsl"
-
-#define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_VOXEL_BITS) restrict readonly buffer VoxelBits { uint voxel_bits[]; };

@@ -3,8 +3,6 @@
 #include "interop/voxelize.h"
 #include "voxelize/raster_lists.glsl"
 #include "voxelize/surface.glsl"
-
-#define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
 layout(std430, binding = SSBO_VOXEL_SUBSET) restrict readonly buffer VoxelSubset { uint voxel_subset[]; };

@@ -7,15 +7,13 @@
 #include "voxelize/queue.glsl"
 #include "voxelize/row_steps.glsl"
 #include "voxelize/surface.glsl"
-
-#define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
 uniform int voxel_shift;
 uniform uint queue;
 uniform uint first;                 // place of the first triangle in the queue
 uniform uint count;                 // number of triangles
-uniform uint threads_per_triangle;  // a multiple or a part of VOXEL_GROUP
+uniform uint threads_per_triangle;  // a multiple or a part of THREADS_PER_GROUP
 
 // Rows that the filter leaves in doubt are decided some at a time, because lanes run in lockstep: doubles for
 // one lane cost all lanes dearly at every turn.

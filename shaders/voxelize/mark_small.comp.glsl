@@ -10,8 +10,6 @@
 #include "voxelize/queue.glsl"
 #include "voxelize/row_steps.glsl"
 #include "voxelize/surface.glsl"
-
-#define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
 uniform int voxel_shift;

@@ -4,8 +4,6 @@
 // thread is 32 texels of a row, whose bits in one slice are a word.
 #include "voxelize/bits.glsl"
 #include "interop/voxelize.h"
-
-#define GROUP_SIZE VOXEL_GROUP
 #include "common/thread.glsl"
 
 layout(binding = TEXTURE_SLICES) uniform usampler2DArray target_slices;

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "gl/limits.h"
 #include "shaders/interop/surface.h"
+#include "shaders/interop/threads.h"
 #include "shaders/interop/voxelize.h"
 #include "voxelizer/surface/far_triangles.h"
 
@@ -37,7 +38,7 @@ void ConservativeVoxelizer::mark_doubtful(const Region& region, unsigned count) 
     set_region(mark_doubtful_, region);
     mark_doubtful_.set("count", count);
     mark_doubtful_.use();
-    gl::dispatch_threads(count, VOXEL_GROUP);
+    gl::dispatch_threads(count, THREADS_PER_GROUP);
 }
 
 /// Threads that share a triangle of a queue.
@@ -48,8 +49,8 @@ unsigned ConservativeVoxelizer::threads_per_triangle(const Region& region, unsig
     // The region's largest triangle may need threads for twice its rows, because rows are shared unevenly.
     const glm::uvec3 size(region.size);
     const std::size_t rows = 2 * (std::size_t(size.y) * size.z + 8 * std::max(size.y, size.z));
-    const std::size_t groups = rows / thread_rows(region) / VOXEL_GROUP + 1;
-    const auto largest = unsigned(std::min<std::size_t>(groups, 65535) * VOXEL_GROUP);
+    const std::size_t groups = rows / thread_rows(region) / THREADS_PER_GROUP + 1;
+    const auto largest = unsigned(std::min<std::size_t>(groups, 65535) * THREADS_PER_GROUP);
     return queue + 1 == VOXEL_QUEUE_SHARED + VOXEL_SHARED_CLASSES ? largest : std::min(of_class, largest);
 }
 
@@ -67,7 +68,7 @@ void ConservativeVoxelizer::mark_queued(const Region& region, unsigned queue, un
         const unsigned triangles = std::min(triangles_at_once, count - first);
         mark_large_.set("first", first);
         mark_large_.set("count", triangles);
-        gl::dispatch_threads(std::size_t(triangles) * threads, VOXEL_GROUP);
+        gl::dispatch_threads(std::size_t(triangles) * threads, THREADS_PER_GROUP);
         glFlush();
     }
 }
@@ -84,7 +85,7 @@ std::vector<MaskCandidate> ConservativeVoxelizer::mark_chunk(const Region& regio
         mark_small_.set("has_subset", int(has_subset));
         mark_small_.set("thread_rows", int(thread_rows(region)));
         mark_small_.use();
-        gl::dispatch_threads(batch, VOXEL_GROUP);
+        gl::dispatch_threads(batch, THREADS_PER_GROUP);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
         std::array<std::uint32_t, VOXEL_QUEUE_COUNT> counts{};
         queue_.read(0, counts.data(), sizeof(counts));

@@ -6,6 +6,7 @@
 
 #include "shaders/interop/grid.h"
 #include "shaders/interop/surface.h"
+#include "shaders/interop/threads.h"
 #include "shaders/interop/voxelize.h"
 #include "voxelizer/surface/exact_mask.h"
 
@@ -74,7 +75,7 @@ unsigned MaskedMarker::list(const Region& region, unsigned queue, const Work& wo
         const unsigned count = std::min(at_once, work.count - done);
         list_.set("first", work.first + done);
         list_.set("count", count);
-        gl::dispatch_threads(std::size_t(count) * slices, VOXEL_GROUP);
+        gl::dispatch_threads(std::size_t(count) * slices, THREADS_PER_GROUP);
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     return header().listed;
@@ -88,7 +89,7 @@ MaskedMarker::Header MaskedMarker::header() const {
 
 void MaskedMarker::decide(unsigned count, std::vector<MaskCandidate>& undecided) {
     decide_.use();
-    gl::dispatch_threads(count, VOXEL_GROUP);
+    gl::dispatch_threads(count, THREADS_PER_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     if (header().undecided == 0) return;
     for (const MaskCandidate& candidate : candidates_.read_all<MaskCandidate>(count, header_bytes)) {

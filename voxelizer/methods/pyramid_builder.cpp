@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "base/clock.h"
+#include "shaders/interop/threads.h"
 #include "shaders/interop/voxelize.h"
 
 namespace cairn::voxelizer {
@@ -75,7 +76,7 @@ void PyramidBuilder::halve(const gl::TextureHandle& fine, const glm::ivec3& fine
     const int coarse_words = (coarse.size.x + 31) / 32;
     gl::dispatch_threads(
         std::size_t((coarse_words + 1) / 2) * std::size_t(coarse.size.y) * std::size_t(coarse.size.z),
-        VOXEL_GROUP);
+        THREADS_PER_GROUP);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

@@ -10,6 +10,7 @@
 #include "gl/buffer_offset.h"
 #include "gl/draw_state.h"
 #include "shaders/interop/surface.h"
+#include "shaders/interop/threads.h"
 #include "voxelizer/surface/far_clip.h"
 
 namespace cairn::voxelizer {
@@ -177,7 +178,7 @@ RasterVoxelizer::Counts RasterVoxelizer::list_batch(const RasterTile& tile, std:
     list_.set("voxel_shift", tile.voxel_shift);
     list_.set("split_far", int(!is_conservative()));
     list_.use();
-    gl::dispatch_threads(count, VOXEL_GROUP);
+    gl::dispatch_threads(count, THREADS_PER_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_ELEMENT_ARRAY_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
     Counts counts{};
@@ -228,7 +229,7 @@ void RasterVoxelizer::unite(const Region& region, const RasterTile& tile) {
             if (target * RASTER_TARGET_SLICES >= tile.size[axis]) break;
             glBindTextureUnit(TEXTURE_SLICES, targets_.texture(target));
             uniting.set("first_slice", target * RASTER_TARGET_SLICES);
-            gl::dispatch_threads(std::size_t(threads), VOXEL_GROUP);
+            gl::dispatch_threads(std::size_t(threads), THREADS_PER_GROUP);
             // Each dispatch adds to words of the one before.
             glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
         }

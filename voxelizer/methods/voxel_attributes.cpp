@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "gl/limits.h"
 #include "shaders/interop/surface.h"
+#include "shaders/interop/threads.h"
 #include "shaders/interop/voxelize.h"
 #include "voxelizer/methods/masked_marker.h"
 #include "voxelizer/methods/pyramid_builder.h"
@@ -211,7 +212,7 @@ unsigned AttributeVoxelizer::list(const gl::Program& program, const ChunkBinding
         set(program, "row_range", work.first_row, work.last_row);
     }
     program.use();
-    gl::dispatch_threads(std::size_t(work.count) * slices, VOXEL_GROUP);
+    gl::dispatch_threads(std::size_t(work.count) * slices, THREADS_PER_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     return pairs_.read_all<std::uint32_t>(1)[0];
 }
@@ -224,7 +225,7 @@ void AttributeVoxelizer::gather_pairs(const ChunkBinding& chunk, const Region& r
     set_region(program, region);
     program.set("count", count);
     program.use();
-    gl::dispatch_threads(count, VOXEL_GROUP);
+    gl::dispatch_threads(count, THREADS_PER_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     glFlush();
 }

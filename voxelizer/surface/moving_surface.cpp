@@ -9,6 +9,7 @@
 #include "scenes/pose.h"
 #include "shaders/interop/deform.h"
 #include "shaders/interop/surface.h"
+#include "shaders/interop/threads.h"
 #include "voxelizer/surface/moving_chunk.h"
 #include "voxelizer/surface/upload_array.h"
 
@@ -137,7 +138,7 @@ bool MovingSurface::Impl::deform(const scenes::Pose& pose) {
         on_gpu_.chunks[i].positions.bind_storage(SSBO_SURFACE_POSITIONS);
         on_gpu_.chunks[i].attributes.bind_storage(SSBO_SURFACE_ATTRIBUTES);
         deform_.set("count", chunks_[i].vertex_count());
-        gl::dispatch_threads(chunks_[i].vertex_count(), DEFORM_GROUP);
+        gl::dispatch_threads(chunks_[i].vertex_count(), THREADS_PER_GROUP);
     }
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     for (std::size_t i = 0; i < chunks_.size(); ++i) {
@@ -152,7 +153,7 @@ bool MovingSurface::Impl::any_far_triangle(std::size_t chunk) {
     chunks_[chunk].bind_frame();
     find_far_.set("count", on_gpu_.chunks[chunk].triangle_count);
     find_far_.use();
-    gl::dispatch_threads(on_gpu_.chunks[chunk].triangle_count, DEFORM_GROUP);
+    gl::dispatch_threads(on_gpu_.chunks[chunk].triangle_count, THREADS_PER_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     return chunks_[chunk].read_header().far_triangles > 0;
 }
