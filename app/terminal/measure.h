@@ -3,8 +3,6 @@
 #include <cstdint>
 #include <utility>
 
-#include <sys/resource.h>
-
 #include "base/clock.h"
 
 namespace cairn::app {
@@ -22,11 +20,9 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
-/// The most memory that this process has held at once, in bytes.
-[[nodiscard]] inline std::uint64_t peak_rss_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::uint64_t(usage.ru_maxrss) * 1024;  // Linux counts it in KiB
-}
+/// The most memory that this program has held at once, in bytes. Not getrusage(): its figure outlives exec(),
+/// so that it may be that of the program that started this one.
+/// @return 0 if the system does not say (/proc/self/status)
+[[nodiscard]] std::uint64_t peak_rss_bytes();
 
 }  // namespace cairn::app

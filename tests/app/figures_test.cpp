@@ -8,6 +8,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "tests/support/command.h"
 #include "tests/support/gltf_file.h"
@@ -310,6 +312,24 @@ TEST(AppVoxelize, MemoryDoesNotGrowWithTheGrid) {
     EXPECT_GT(figures["occupied"], 10'000'000);
     EXPECT_GT(figures["regions"], 16);
     EXPECT_LT(figures["peak_rss_bytes"], 640LL << 20);
+}
+
+TEST(AppVoxelize, PeakMemoryIsNotThatOfTheProgramThatStartedIt) {
+    const ScratchFolder folder;
+    const std::string json = folder.file("figures.json");
+    const std::vector<char> held(std::size_t(1) << 30U, 'x');
+    const pid_t child = fork();
+    if (child == 0) {
+        execl(CAIRN_COMMAND, "cairn", "voxelize", "builtin:knot", "-r", "16", "--quiet", "--json",
+              json.c_str(), nullptr);
+        _exit(127);
+    }
+    int status = -1;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_EQ(status, 0);
+    const Json figures = Json::parse(read_text(json));
+    EXPECT_GT(figures["peak_rss_bytes"], 10LL << 20);
+    EXPECT_LT(figures["peak_rss_bytes"], 800LL << 20) << "held by the test: " << held.size();
 }
 
 TEST(AppCheck, OfSeveralRegionsFindsNoDifference) {
