@@ -6,15 +6,18 @@
 
 namespace {
 thread_local std::size_t count = 0;
+thread_local std::size_t bytes = 0;
 }  // namespace
 
 void* operator new(std::size_t size) {
     ++count;
+    bytes += size;
     if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
     throw std::bad_alloc();
 }
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     ++count;
+    bytes += size;
     return std::malloc(size == 0 ? 1 : size);
 }
 void operator delete(void* memory) noexcept {
@@ -26,4 +29,8 @@ void operator delete(void* memory, std::size_t) noexcept {
 
 std::size_t cairn::test::news() {
     return count;
+}
+
+std::size_t cairn::test::new_bytes() {
+    return bytes;
 }
