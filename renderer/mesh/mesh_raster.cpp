@@ -41,9 +41,9 @@ struct Strip {
     bool operator==(const Strip&) const = default;
 };
 
-Strip strip_of(const interop::MarchView& view, const ViewSpace& space, int row) {
+Strip strip_of(const interop::MarchView& view, const ViewSpace& space, int row, int strip_pixels) {
     const glm::ivec2 picture(view.width, view.height);
-    const int most = std::max(MESH_STRIP_PIXELS / picture.x, 1);
+    const int most = std::max(strip_pixels / picture.x, 1);
     const int first = row / most * most;
     return {view.eye, view.forward, view.right,
             view.up,  view.skipped, picture,
@@ -86,8 +86,9 @@ gl::Buffer index_buffer(const voxelizer::GpuSurfaceChunk& chunk) {
 }  // namespace
 
 struct MeshRaster::Impl {
-    Impl(const voxelizer::Grid& grid, const gl::ShaderSource& shaders)
-        : lattice(grid),
+    Impl(const voxelizer::Grid& grid, const gl::ShaderSource& shaders, const MeshRasterLimits& wanted)
+        : limits{std::max(wanted.triangles, 1U), wanted.strip_pixels},
+          lattice(grid),
           view_buffer(sizeof(interop::MarchView), "view of a mesh"),
           mesh_view_buffer(sizeof(interop::MeshView), "place of a mesh"),
           place_triangles(gl::build_compute(shaders, "mesh/place_triangles.comp.glsl")),
@@ -113,7 +114,7 @@ struct MeshRaster::Impl {
             triangle_count += chunk.triangle_count;
             largest = std::max<std::size_t>(largest, chunk.triangle_count);
         }
-        largest = std::min<std::size_t>(largest, MESH_BATCH_TRIANGLES);
+        largest = std::min<std::size_t>(largest, limits.triangles);
         if (placed.size_bytes() < largest * sizeof(interop::MeshTriangle))
             placed = gl::Buffer(largest * sizeof(interop::MeshTriangle), "triangles of a mesh");
         forget_drawn();
@@ -136,6 +137,7 @@ struct MeshRaster::Impl {
     void draw_look(const Strip& strip);
     void draw_span(const Strip& strip);
 
+    MeshRasterLimits limits;
     voxelizer::Grid lattice;
     std::uint64_t triangle_count = 0;
     voxelizer::GpuSurface scene_surface;             ///< empty if the surface is the caller's
@@ -201,8 +203,8 @@ void MeshRaster::Impl::draw_all(const gl::Program& drawing) {
         surface->bind(chunk);
         glVertexArrayVertexBuffer(vertex_array.id(), 0, mesh.positions.id(), 0, 3 * sizeof(std::int32_t));
         glVertexArrayElementBuffer(vertex_array.id(), indices[chunk].id());
-        for (unsigned first = 0; first < mesh.triangle_count; first += MESH_BATCH_TRIANGLES) {
-            const unsigned count = std::min(mesh.triangle_count - first, unsigned(MESH_BATCH_TRIANGLES));
+        for (unsigned first = 0; first < mesh.triangle_count; first += limits.triangles) {
+            const unsigned count = std::min(mesh.triangle_count - first, limits.triangles);
             place(chunk, first, count);
             drawing.set("first", first);
             drawing.use();
@@ -272,14 +274,14 @@ voxelizer::Grid lattice_around(const scenes::Bounds& bounds) {
 
 MeshRaster::MeshRaster(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                        const gl::ShaderSource& shaders)
-    : impl_(std::make_unique<Impl>(lattice_around(snapshot.bounds), shaders)) {
+    : impl_(std::make_unique<Impl>(lattice_around(snapshot.bounds), shaders, MeshRasterLimits())) {
     impl_->scene_surface =
         voxelizer::upload(voxelizer::build_surface(scene, snapshot, impl_->lattice, {.attributes = true}));
     impl_->show(impl_->scene_surface);
 }
 MeshRaster::MeshRaster(const voxelizer::GpuSurface& surface, const voxelizer::Grid& lattice,
-                       const gl::ShaderSource& shaders)
-    : impl_(std::make_unique<Impl>(lattice, shaders)) {
+                       const gl::ShaderSource& shaders, const MeshRasterLimits& limits)
+    : impl_(std::make_unique<Impl>(lattice, shaders, limits)) {
     impl_->show(surface);
 }
 MeshRaster::MeshRaster(MeshRaster&&) noexcept = default;
@@ -301,7 +303,7 @@ void MeshRaster::show(const voxelizer::GpuSurface& surface) {
 }
 
 MeshSurface MeshRaster::draw_surface(const interop::MarchView& view, const ViewSpace& space, int row) {
-    const Strip strip = strip_of(view, space, row);
+    const Strip strip = strip_of(view, space, row, impl_->limits.strip_pixels);
     if (impl_->surface_strip != strip) {
         impl_->surface_strip.reset();
         impl_->draw_nearest(strip);
@@ -312,7 +314,7 @@ MeshSurface MeshRaster::draw_surface(const interop::MarchView& view, const ViewS
 }
 
 MeshSpan MeshRaster::draw_span(const interop::MarchView& view, const ViewSpace& space, int row) {
-    const Strip strip = strip_of(view, space, row);
+    const Strip strip = strip_of(view, space, row, impl_->limits.strip_pixels);
     if (impl_->span_strip != strip) {
         impl_->span_strip.reset();
         impl_->draw_span(strip);

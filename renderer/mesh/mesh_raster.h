@@ -44,6 +44,13 @@ struct MeshSpan {
     GLuint faces = 0;
 };
 
+/// How much a MeshRaster draws at a time. No pixel depends on it. A number under the least is taken for the
+/// least.
+struct MeshRasterLimits {
+    std::uint32_t triangles = 1U << 18U;      ///< per draw call; at least 1
+    std::int32_t strip_pixels = 4096 * 1024;  ///< of a picture that are drawn at once; at least one row's
+};
+
 /// A scene as triangles, rasterized through the pixels that the marcher sends its rays through. Triangles get
 /// the base colours that voxels get (shaders/voxelize/surface_color.glsl): factor, vertex colour and the
 /// nearest texel, with holes where an alpha mask cuts them. Like voxels, triangles are seen from both sides.
@@ -64,16 +71,16 @@ public:
     /// For a surface of the caller's, with attributes. It must outlive the raster, or stay until show()
     /// replaces it.
     MeshRaster(const voxelizer::GpuSurface& surface, const voxelizer::Grid& lattice,
-               const gl::ShaderSource& shaders = {});
+               const gl::ShaderSource& shaders = {}, const MeshRasterLimits& limits = {});
     MeshRaster(MeshRaster&&) noexcept;
     MeshRaster& operator=(MeshRaster&&) noexcept;
     MeshRaster(const MeshRaster&) = delete;
     MeshRaster& operator=(const MeshRaster&) = delete;
     ~MeshRaster();
 
-    /// Draws the rows around one row of the picture. Which rows depends on the picture's size alone, so that
-    /// a row always has the same pixels. Rows that are drawn already for this camera cost nothing. The
-    /// textures are valid until the next call.
+    /// Draws the rows around one row of the picture. Which rows depends on the picture's size and the limits
+    /// alone, so that a row always has the same pixels. Rows that are drawn already for this camera cost
+    /// nothing. The textures are valid until the next call.
     /// @param view  only the camera and the picture's size are read.
     [[nodiscard]] MeshSurface draw_surface(const interop::MarchView& view, const ViewSpace& space, int row);
     /// Draws the first and the last faces in the rows around one row of the picture, like draw_surface().

@@ -9,8 +9,6 @@
 namespace cairn::renderer {
 namespace {
 
-constexpr std::size_t batch = 1024;
-
 bool is_occupied(const Tile& tile, const TreeShape& shape) {
     return shape.n == 3 ? sponge::occupied(tile.position, tile.level)
                         : fractal::occupied(tile.position, shape.n_shift() * tile.level);
@@ -52,18 +50,19 @@ glm::uvec2 FractalOracle::child_mask(const Tile& tile) {
     return mask;
 }
 
-FractalProducer::FractalProducer(const TreeShape& shape, const gl::ShaderSource& shaders)
+FractalProducer::FractalProducer(const TreeShape& shape, const gl::ShaderSource& shaders, std::size_t batch)
     : shape_(shape),
+      batch_(std::max<std::size_t>(batch, 1)),
       texels_(gl::build_compute(shaders, "produce/fractal.comp.glsl", shape.defines(false))),
       masks_(gl::build_compute(shaders, "produce/fractal_masks.comp.glsl", shape.defines(false))),
-      tiles_(batch * sizeof(interop::FractalTile), "fractal tiles") {}
+      tiles_(batch_ * sizeof(interop::FractalTile), "fractal tiles") {}
 
 std::vector<ProducedTile> FractalProducer::produce(std::span<const BrickRequest> requests,
                                                    const BrickPool& pool) {
     const auto side = std::size_t(shape_.m) + 2;
     const auto words = std::size_t(shape_.mask_words());
-    for (std::size_t first = 0; first < requests.size(); first += batch) {
-        const std::size_t count = std::min(batch, requests.size() - first);
+    for (std::size_t first = 0; first < requests.size(); first += batch_) {
+        const std::size_t count = std::min(batch_, requests.size() - first);
         std::vector<interop::FractalTile> tiles;
         for (const BrickRequest& request : requests.subspan(first, count)) {
             interop::FractalTile& tile = tiles.emplace_back();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "gl/buffer.h"
@@ -50,11 +51,13 @@ private:
 /// fractal.
 class FractalProducer final : public Producer {
 public:
-    FractalProducer(const TreeShape& shape, const gl::ShaderSource& shaders);
+    /// @param batch  bricks that are filled at a time, at least 1. No brick depends on it.
+    FractalProducer(const TreeShape& shape, const gl::ShaderSource& shaders, std::size_t batch = 1024);
     std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
 
 private:
     TreeShape shape_;
+    std::size_t batch_;
     gl::Program texels_;
     gl::Program masks_;
     gl::Buffer tiles_;

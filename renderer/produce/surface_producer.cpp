@@ -11,9 +11,6 @@
 namespace cairn::renderer {
 namespace {
 
-constexpr std::size_t scratch_budget_bytes = std::size_t(24) << 20U;
-/// Pairs that are sent to the driver at once.
-constexpr std::size_t pair_capacity = std::size_t(1) << 18U;
 /// Loop turns of a thread at most. A triangle that crosses a whole brick is cut in pieces, which threads
 /// share, because no thread may turn its loops too often (docs/decisions/house_and_scenes.md). A voxel takes
 /// one turn itself, 16 for its rows, and 64 more for an alpha mask.
@@ -42,14 +39,16 @@ glm::ivec3 voxel_of(const glm::ivec3& place, int voxel) {
 }  // namespace
 
 SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface,
-                                 voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders)
+                                 voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders,
+                                 const SurfaceProducerLimits& limits)
     : shape_(shape),
       surface_(surface),
       lists_(lists),
       finds_empty_(shape.cell_base() != 2 || surface.has_mask),
+      pair_room_(std::max<std::size_t>(limits.pairs, 1)),
       pairs_(surface.chunks.size()) {
     const std::size_t brick_bytes = scratch_bytes_per_brick(shape, surface.has_color);
-    batch_ = int(std::clamp<std::size_t>(scratch_budget_bytes / brick_bytes, 1, 0xFFFF));
+    batch_ = int(std::clamp<std::size_t>(limits.scratch_bytes / brick_bytes, 1, 0xFFFF));
     gl::Defines defines = shape.defines(surface.has_color);
     resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
     defines.emplace_back("FINDS_EMPTY", finds_empty_ ? "1" : "0");
@@ -66,7 +65,7 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
     if (finds_empty_)
         found_ = gl::Buffer(std::size_t(batch_) * sizeof(std::uint32_t), "bricks that hold anything");
-    pair_buffer_ = gl::Buffer(pair_capacity * sizeof(interop::BrickPair), "brick pairs");
+    pair_buffer_ = gl::Buffer(pair_room_ * sizeof(interop::BrickPair), "brick pairs");
 }
 
 std::vector<ProducedTile> SurfaceProducer::produce(std::span<const BrickRequest> requests,
@@ -112,8 +111,8 @@ void SurfaceProducer::gather_pairs_of_mip(const Tile& tile, std::uint32_t number
             for (int y = first.y; y <= last.y; y += step.x) {
                 const auto y_count = std::uint32_t(std::min(step.x, last.y - y + 1));
                 const auto z_count = std::uint32_t(std::min(step.y, last.z - z + 1));
-                pairs_[triangle / SURFACE_CHUNK_TRIANGLES].push_back(
-                    {triangle % SURFACE_CHUNK_TRIANGLES, number | std::uint32_t(mip) << 16U,
+                pairs_[triangle / surface_.chunk_triangles].push_back(
+                    {triangle % surface_.chunk_triangles, number | std::uint32_t(mip) << 16U,
                      std::uint32_t(y) | y_count << 8U | std::uint32_t(z) << 16U | z_count << 24U});
             }
         }
@@ -128,8 +127,8 @@ void SurfaceProducer::splat(std::size_t chunk) {
     scratch_.bind_storage(SSBO_BRICK_SCRATCH);
     pair_buffer_.bind_storage(SSBO_BRICK_PAIRS);
     splat_.use();
-    for (std::size_t i = 0; i < pairs.size(); i += pair_capacity) {
-        const std::size_t count = std::min(pair_capacity, pairs.size() - i);
+    for (std::size_t i = 0; i < pairs.size(); i += pair_room_) {
+        const std::size_t count = std::min(pair_room_, pairs.size() - i);
         pair_buffer_.write(0, &pairs[i], count * sizeof(interop::BrickPair));
         splat_.set("pair_count", unsigned(count));
         gl::dispatch_threads(count, THREADS_PER_GROUP);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,14 @@
 
 namespace cairn::renderer {
 
+/// How much a SurfaceProducer does at a time. No brick depends on it. A number under the least is taken for
+/// the least.
+struct SurfaceProducerLimits {
+    std::size_t scratch_bytes = std::size_t(24) << 20U;  ///< of the bricks of a batch; at least one brick's
+    std::size_t pairs = std::size_t(1)
+                        << 18U;  ///< of triangle and tile, sent to the driver at once; at least 1
+};
+
 /// Fills bricks by voxelizing the tile's region four times finer, from the triangles in the tile's list:
 /// coverage is the share of finer bits, base colour and normal are means over them. All work is on the GPU,
 /// for many bricks at once. Each mip is voxelized like a brick of its own, so that it equals the matching
@@ -20,7 +29,8 @@ class SurfaceProducer final : public Producer {
 public:
     /// Refers to the surface and the lists, which must outlive it.
     SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSurface& surface,
-                    voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders);
+                    voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders,
+                    const SurfaceProducerLimits& limits = {});
 
     std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
 
@@ -38,7 +48,8 @@ private:
     /// The oracle may let empty tiles through: with N = 3, and with alpha masks, which the oracle decides
     /// exactly and bricks sample. Then the shaders report which bricks are empty.
     bool finds_empty_;
-    int batch_ = 1;
+    int batch_ = 1;          ///< bricks at a time
+    std::size_t pair_room_;  ///< pairs that are sent to the driver at once
     gl::Program splat_;
     gl::Program masks_;
     gl::Program summarize_;

@@ -13,9 +13,6 @@
 namespace cairn::renderer {
 namespace {
 
-/// Texels that are made and sent at once.
-constexpr std::size_t batch_bytes = std::size_t(4) << 20U;
-
 /// Side of a voxel of a coarseness, in finest voxels: n to that power.
 std::int64_t voxel_side(int n, int coarseness) {
     std::int64_t side = 1;
@@ -162,7 +159,8 @@ bool VolumeOracle::is_empty(const Tile& tile) {
     return !test_.shows(stored(range.low), stored(range.high));
 }
 
-VolumeProducer::VolumeProducer(const VolumeShape& shape, const Field& field, const DensityTest& test)
+VolumeProducer::VolumeProducer(const VolumeShape& shape, const Field& field, const DensityTest& test,
+                               std::size_t batch_bytes)
     : shape_(shape), field_(field), test_(test) {
     const BrickVoxels brick(shape.tree.m, nullptr);
     batch_ = std::max<std::size_t>(batch_bytes / brick.count(), 1);

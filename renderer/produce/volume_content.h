@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -62,7 +63,10 @@ private:
 class VolumeProducer final : public Producer {
 public:
     /// Refers to the field and the test, which must outlive it.
-    VolumeProducer(const VolumeShape& shape, const Field& field, const DensityTest& test);
+    /// @param batch_bytes  texels that are made and sent at once; at least one brick's. No brick depends on
+    /// it.
+    VolumeProducer(const VolumeShape& shape, const Field& field, const DensityTest& test,
+                   std::size_t batch_bytes = std::size_t(4) << 20U);
     std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
     [[nodiscard]] double upload_ms() const override { return upload_ms_; }
 

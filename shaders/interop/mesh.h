@@ -17,8 +17,6 @@
 #define TEXTURE_PROXY_SPAN 10
 #define TEXTURE_PROXY_FACES 11   // R32F per pixel: number of front faces less that of back faces
 
-#define MESH_BATCH_TRIANGLES 262144  // triangles per draw call
-#define MESH_STRIP_PIXELS 4194304    // pixels of a picture that are drawn at once, in whole rows
 #define MESH_MISS 1e30               // distance of a pixel without a mesh
 #define MESH_NEAREST_PART 9.5367431640625e-7  // 2^-20: least distance that is drawn, in sides of the mesh
 // Voxels whose centres lie lower over a mesh are part of its surface and cast no shadow on it, in sides of a

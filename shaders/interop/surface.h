@@ -13,11 +13,6 @@
 #define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each; then the counts of masks
 #define ATTRIBUTE_POSITION 0       // position of a vertex, when the surface is rasterized
 
-// A surface is cut in chunks of at most this many triangles, so that each of its buffers stays under the
-// smallest shader-storage limit in use (128 MiB). A triangle's global number is chunk *
-// SURFACE_CHUNK_TRIANGLES + local.
-#define SURFACE_CHUNK_TRIANGLES 2097152
-
 // Texture coordinates are rounded to 1 / TEXCOORD_UNITS when a surface is built, and to 1 / TEXEL_UNITS of a
 // texel when an alpha mask is read (shaders/voxelize/alpha_mask.glsl, voxelizer/surface/exact_mask.h).
 #define TEXCOORD_UNITS 67108864.0

@@ -4,7 +4,7 @@
 
 #define SSBO_VOXEL_BITS 5    // BitGrid::words
 #define SSBO_VOXEL_QUEUE 6   // VOXEL_QUEUE_* counters, then the queues
-// The next two share a number: a pass that marks a subset must not list candidates.
+// The next two share a number, because GL promises eight: each pass binds its own anew.
 #define SSBO_VOXEL_SUBSET 7      // numbers of the triangles to mark, if not all
 #define SSBO_VOXEL_CANDIDATES 7  // voxels that a mask may cut away (shaders/voxelize/candidates.glsl)
 
@@ -12,9 +12,6 @@
 #define TEXTURE_HALVE_FINE 0  // BitGrid::words
 #define SSBO_HALVE_COARSE 0
 
-// Triangles that are marked in one pass: this bounds the queues and the time of a dispatch.
-#define VOXEL_BATCH_TRIANGLES 262144
-#define VOXEL_CANDIDATES 1048576  // voxels of masked triangles in one pass
 // A triangle of at most VOXEL_SMALL_ROWS rows is marked by the thread that reads it. Larger ones wait in
 // queues, and are shared by so many threads that each thread has about VOXEL_THREAD_ROWS rows.
 #define VOXEL_SMALL_ROWS 64
@@ -49,8 +46,6 @@
 #define SSBO_ATTRIBUTE_SUMS 6
 #define SSBO_ATTRIBUTE_PAIRS 7   // which triangle touches which voxel (shaders/voxelize/attribute_pairs.glsl)
 #define VOXEL_RANK_WORDS 8
-#define ATTRIBUTE_PAIRS 1048576         // pairs in one pass
-#define ATTRIBUTE_PART_VOXELS 1048576   // occupied voxels that are gathered at a time
 #define ATTRIBUTE_SUM_WORDS 14
 #define ATTRIBUTE_SMALL_BOX 4096        // voxels of a triangle's box that one thread lists
 #define ATTRIBUTE_SAMPLE_ROWS 8         // a textured piece is cut in at most the square of this many parts
@@ -66,7 +61,6 @@
 #define TEXTURE_SLICES 0     // a target of the raster methods, when its slices are joined
 #define RASTER_TARGET_SLICES 128
 #define RASTER_TARGETS 8
-#define RASTER_TARGET_MIB 256  // bytes of all targets of a pass together, in MiB
 // Kinds of primitives, each with its list: proper triangles; segments and points (degenerate triangles among
 // them); and triangles that reach more than RASTER_FAR_VOXELS past a tile, so that the driver's clipping
 // would bend them.

@@ -2,7 +2,7 @@
 #include "interop/voxelize.h"
 
 layout(std430, binding = SSBO_VOXEL_CANDIDATES) restrict buffer VoxelCandidateBlock {
-    // Number of candidates; those past VOXEL_CANDIDATES found no room.
+    // Number of candidates; those past the end of `candidates` found no room.
     uint candidate_count;
     uint undecided_count;
     uint padding[2];

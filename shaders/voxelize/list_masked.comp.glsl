@@ -33,7 +33,7 @@ void main() {
         for (int x = max(span.x, low.x); x <= min(span.y, high.x); ++x) {
             if (is_marked(ivec3(x, row))) continue;
             const uint place = atomicAdd(candidate_count, 1u);
-            if (place < VOXEL_CANDIDATES) candidates[place] = ivec4(x, row, triangle);
+            if (place < uint(candidates.length())) candidates[place] = ivec4(x, row, triangle);
         }
     }
 }

@@ -41,7 +41,7 @@ void list_voxel(ivec3 place, uint triangle) {
     for (uint i = word - word % VOXEL_RANK_WORDS; i < word; ++i) rank += uint(bitCount(voxel_bits[i]));
     if (rank < part.x || rank >= part.y) return;
     const uint pair = atomicAdd(pair_count, 1u);
-    if (pair >= ATTRIBUTE_PAIRS) return;
+    if (pair >= uint(pairs.length())) return;
     pairs[pair] = uvec4(uint(place.x) | uint(place.y) << 16, uint(place.z), rank - part.x, triangle);
 }
 
@@ -75,7 +75,7 @@ void main() {
         list_row(t, row_slice(t, row.y), low, high, row, triangle);
     }
 #else
-    if (float(size.x) * float(size.y) * float(size.z) > float(ATTRIBUTE_SMALL_BOX)) {
+    if (float(size.x) * float(size.y) * float(size.z) > float(min(ATTRIBUTE_SMALL_BOX, pairs.length()))) {
         enqueue(0u, triangle);
         return;
     }

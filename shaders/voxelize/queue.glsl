@@ -4,11 +4,14 @@
 
 layout(std430, binding = SSBO_VOXEL_QUEUE) restrict buffer VoxelQueue { uint voxel_queue[]; };
 
+// Triangles of a batch at most.
+uint queue_room() { return uint(voxel_queue.length()) / VOXEL_QUEUE_COUNT - 1u; }
+
 void enqueue(uint queue, uint triangle) {
     const uint place = atomicAdd(voxel_queue[queue], 1u);
-    voxel_queue[VOXEL_QUEUE_COUNT + queue * VOXEL_BATCH_TRIANGLES + place] = triangle;
+    voxel_queue[VOXEL_QUEUE_COUNT + queue * queue_room() + place] = triangle;
 }
 
 uint queued(uint queue, uint place) {
-    return voxel_queue[VOXEL_QUEUE_COUNT + queue * VOXEL_BATCH_TRIANGLES + place];
+    return voxel_queue[VOXEL_QUEUE_COUNT + queue * queue_room() + place];
 }

@@ -9,6 +9,7 @@
 #include "bench/trials/shadow_runs.h"
 #include "bench/trials/shadow_scene.h"
 #include "reference/shadow_truth.h"
+#include "renderer/mesh/mesh_raster.h"
 #include "shaders/interop/mesh.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/scratch_folder.h"
@@ -249,7 +250,7 @@ TEST_F(ShadowChart, ManyRaysAreNoLessAccurateThanFew) {
 // were written while the one before is still drawn, some runs would show triangles that are not there.
 TEST_F(ShadowChart, MeshesOfSeveralBatchesAreWhole) {
     const ShadowScene scene("builtin:tree");
-    ASSERT_GT(scene.all().triangle_count, std::uint64_t(MESH_BATCH_TRIANGLES));
+    ASSERT_GT(scene.all().triangle_count, std::uint64_t(renderer::MeshRasterLimits().triangles));
     const scenes::NodeSelection everything(scene.scene().nodes.size(), true);
     const reference::ImageTracer tracer(scene.scene(), scene.all());
     ShadowFrames ours(renderer::ShadowMethod::voxel, scene, {.tree = tree_of(256)});

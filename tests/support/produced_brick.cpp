@@ -147,6 +147,24 @@ PoolTextures textures_of(const BrickPool& pool) {
     return textures;
 }
 
+std::vector<std::uint8_t> slot_content(const BrickPool& pool, int slot) {
+    std::vector<std::uint8_t> bytes;
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    for (const BrickPool::Layer& layer : pool.layers()) {
+        const glm::ivec3 low = pool.first_texel(slot, layer.mip);
+        const int size = layer.side * layer.side * layer.side * layer.texel_bytes;
+        bytes.resize(bytes.size() + std::size_t(size));
+        glGetTextureSubImage(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
+                             layer.format, layer.type, size, &bytes[bytes.size() - std::size_t(size)]);
+    }
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    const std::size_t mask_bytes = pool.mask_bytes_per_slot();
+    const std::vector<std::uint8_t> masks =
+        pool.masks().read_all<std::uint8_t>(mask_bytes, std::size_t(slot) * mask_bytes);
+    bytes.insert(bytes.end(), masks.begin(), masks.end());
+    return bytes;
+}
+
 voxelizer::BitGrid mask_bits(const ProducedBrick& brick) {
     return bits_where(0, brick.m, [&](const glm::ivec3& place) { return brick.occupied(place); });
 }

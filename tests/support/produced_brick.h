@@ -43,6 +43,9 @@ struct ProducedBrick {
 [[nodiscard]] ProducedBrick read_brick(const renderer::BrickPool& pool, const renderer::TreeShape& shape,
                                        int slot);
 
+/// All bytes of a slot, layer by layer, then its masks.
+[[nodiscard]] std::vector<std::uint8_t> slot_content(const renderer::BrickPool& pool, int slot);
+
 /// Bytes of the driver's memory that the pool's stores take.
 struct PoolTextures {
     glm::ivec3 color_size{0};

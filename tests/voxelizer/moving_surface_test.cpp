@@ -135,7 +135,7 @@ TEST_F(Moving, SurfacesOfSeveralChunksMoveWhole) {
     scenes::Mesh& mesh = scene.meshes.emplace_back();
     mesh.primitives.push_back(many.meshes[0].primitives[0]);
     std::vector<std::uint32_t>& indices = mesh.primitives[0].indices;
-    indices.resize(3 * (std::size_t(SURFACE_CHUNK_TRIANGLES) - 17));
+    indices.resize(3 * (std::size_t(voxelizer::surface_chunk_triangles) - 17));
     for (std::size_t i = 0; i < indices.size(); ++i)
         indices[i] = std::uint32_t(i % 3);
     scene.nodes.emplace_back().mesh = int(scene.meshes.size()) - 1;

@@ -222,7 +222,7 @@ TEST_F(RasterTest, SubsetsAndChunksMarkOnlyTheirTriangles) {
     const SurfaceChunk first = surface.chunks[0];
     surface.chunks.push_back(lattice_surface({{wall(0, 3 * voxel + 9)[0]}}, 16).chunks[0]);
     const GpuSurface on_gpu = upload(surface);
-    const std::vector<std::uint32_t> chosen = {2, 5, 11, SURFACE_CHUNK_TRIANGLES};
+    const std::vector<std::uint32_t> chosen = {2, 5, 11, surface_chunk_triangles};
     for (const Method method : methods) {
         const std::vector<LatticeTriangle> same = {triangles[2], triangles[5], triangles[11],
                                                    wall(0, 3 * voxel + 9)[0]};
@@ -360,16 +360,17 @@ TEST_F(RasterTest, DrawingStateOfOthersNeitherHarmsNorIsHarmed) {
 }
 
 TEST(RasterTiles, CoverARegionOnceWithinTheLimits) {
+    const std::size_t limit = BatchLimits().target_bytes;
     for (const int directions : {1, 3}) {
         for (const glm::ivec3& size : {glm::ivec3(1), glm::ivec3(1024), glm::ivec3(1025, 3, 3),
                                        glm::ivec3(3, 16384, 40), glm::ivec3(2048, 1000, 37)}) {
-            const std::vector<RasterTile> tiles = raster_tiles({14, glm::ivec3(0), size}, directions);
+            const std::vector<RasterTile> tiles = raster_tiles({14, glm::ivec3(0), size}, directions, limit);
             std::int64_t voxels = 0;
             for (const RasterTile& tile : tiles) {
                 EXPECT_EQ(tile.place.x % 32, 0);
                 EXPECT_LE(tile.longest_side(), 1024);
                 EXPECT_LE(SliceTargets::bytes(tile.plane(directions), directions, tile.slices(directions)),
-                          std::size_t(RASTER_TARGET_MIB) << 20);
+                          limit);
                 EXPECT_EQ(tile.lattice_low, tile.place << tile.voxel_shift);
                 voxels += std::int64_t(tile.size.x) * tile.size.y * tile.size.z;
             }
@@ -377,8 +378,9 @@ TEST(RasterTiles, CoverARegionOnceWithinTheLimits) {
                 << fmt::format("{} {} {}", size.x, size.y, size.z);
         }
     }
-    EXPECT_TRUE(raster_tiles({4, glm::ivec3(40), glm::ivec3(5)}, 3).empty()) << "no vertex reaches there";
-    EXPECT_EQ(raster_tiles({0, glm::ivec3(-8000), glm::ivec3(16000)}, 3).size(), 1U);
+    EXPECT_TRUE(raster_tiles({4, glm::ivec3(40), glm::ivec3(5)}, 3, limit).empty())
+        << "no vertex reaches there";
+    EXPECT_EQ(raster_tiles({0, glm::ivec3(-8000), glm::ivec3(16000)}, 3, limit).size(), 1U);
 }
 
 }  // namespace

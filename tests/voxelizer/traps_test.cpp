@@ -112,7 +112,7 @@ TEST_F(Traps, CornersAtTheEndsOfTheShadersRangeAreExact) {
 TEST_F(Traps, MoreTrianglesThanOneBatchAreExact) {
     Random random(63);
     std::vector<LatticeTriangle> triangles;
-    for (int i = 0; i < VOXEL_BATCH_TRIANGLES + 1000; ++i) {
+    for (int i = 0; i < int(BatchLimits().triangles) + 1000; ++i) {
         const glm::i64vec3 p = random.point(0, N);
         triangles.push_back({p, p + random.point(-9999, 9999), p + random.point(-9999, 9999)});
     }
@@ -132,7 +132,7 @@ TEST_F(Traps, EveryChunkOfASurfaceCounts) {
     }
     const GpuSurface on_gpu = upload(surface);
     EXPECT_TRUE(same_bits(voxelizer().voxelize(on_gpu, region), voxelize(triangles, region)));
-    const std::vector<std::uint32_t> some = {3, SURFACE_CHUNK_TRIANGLES + 4, 2 * SURFACE_CHUNK_TRIANGLES + 5};
+    const std::vector<std::uint32_t> some = {3, surface_chunk_triangles + 4, 2 * surface_chunk_triangles + 5};
     EXPECT_TRUE(same_bits(voxelizer().voxelize(on_gpu, region, some),
                           voxelize({triangles[3], triangles[14], triangles[25]}, region)));
 }

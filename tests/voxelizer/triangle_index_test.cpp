@@ -63,7 +63,7 @@ std::vector<std::uint32_t> brute_force(const TreeShape& shape, const voxelizer::
                 to = glm::max(to, glm::i64vec3(p[0], p[1], p[2]));
             }
             if (glm::any(glm::lessThan(to, low)) || glm::any(glm::greaterThan(from, high))) continue;
-            numbers.push_back(std::uint32_t(chunk * SURFACE_CHUNK_TRIANGLES + i));
+            numbers.push_back(std::uint32_t(chunk * surface.chunk_triangles + i));
         }
     }
     return numbers;

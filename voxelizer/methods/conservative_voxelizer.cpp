@@ -26,12 +26,13 @@ unsigned thread_rows(const Region& region) {
 
 }  // namespace
 
-ConservativeVoxelizer::ConservativeVoxelizer(const gl::ShaderSource& shaders)
+ConservativeVoxelizer::ConservativeVoxelizer(const gl::ShaderSource& shaders, const BatchLimits& limits)
     : Voxelizer(shaders),
+      limits_(limits),
       mark_small_(gl::build_compute(shaders, "voxelize/mark_small.comp.glsl", {{"EXACT", "0"}})),
       mark_doubtful_(gl::build_compute(shaders, "voxelize/mark_small.comp.glsl", {{"EXACT", "1"}})),
       mark_large_(gl::build_compute(shaders, "voxelize/mark_large.comp.glsl")),
-      queue_(VOXEL_QUEUE_COUNT * (1 + std::size_t(VOXEL_BATCH_TRIANGLES)) * sizeof(std::uint32_t),
+      queue_(VOXEL_QUEUE_COUNT * (1 + std::size_t(std::max(limits.triangles, 1U))) * sizeof(std::uint32_t),
              "voxel queues") {}
 
 void ConservativeVoxelizer::mark_doubtful(const Region& region, unsigned count) {
@@ -57,9 +58,8 @@ unsigned ConservativeVoxelizer::threads_per_triangle(const Region& region, unsig
 /// A dispatch is kept to a size that takes a fraction of a second, because some systems stop a driver that is
 /// busy for longer.
 void ConservativeVoxelizer::mark_queued(const Region& region, unsigned queue, unsigned count) {
-    constexpr unsigned threads_at_once = 1U << 26;
     const unsigned threads = threads_per_triangle(region, queue);
-    const unsigned triangles_at_once = std::max(threads_at_once / threads, 1U);
+    const unsigned triangles_at_once = std::max(limits_.threads / threads, 1U);
     set_region(mark_large_, region);
     mark_large_.set("queue", queue);
     mark_large_.set("threads_per_triangle", threads);
@@ -73,22 +73,30 @@ void ConservativeVoxelizer::mark_queued(const Region& region, unsigned queue, un
     }
 }
 
-std::vector<MaskCandidate> ConservativeVoxelizer::mark_chunk(const Region& region, std::size_t count,
-                                                             bool has_subset) {
+ConservativeVoxelizer::QueueCounts ConservativeVoxelizer::mark_small(const Region& region,
+                                                                     const ChunkPart& part, std::size_t first,
+                                                                     std::size_t count) {
+    queue_.fill(0, sizeof(QueueCounts), 0);
+    // The batch before may have bound its candidates here.
+    if (part.subset) part.subset->bind_storage(SSBO_VOXEL_SUBSET);
+    set_region(mark_small_, region);
+    mark_small_.set("first", unsigned(first));
+    mark_small_.set("count", unsigned(count));
+    mark_small_.set("has_subset", int(part.subset.has_value()));
+    mark_small_.set("thread_rows", int(thread_rows(region)));
+    mark_small_.use();
+    gl::dispatch_threads(count, THREADS_PER_GROUP);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    QueueCounts counts{};
+    queue_.read(0, counts.data(), sizeof(counts));
+    return counts;
+}
+
+std::vector<MaskCandidate> ConservativeVoxelizer::mark_chunk(const Region& region, const ChunkPart& part) {
     std::vector<MaskCandidate> undecided;
-    for (std::size_t first = 0; first < count; first += VOXEL_BATCH_TRIANGLES) {
-        const std::size_t batch = std::min<std::size_t>(count - first, VOXEL_BATCH_TRIANGLES);
-        queue_.fill(0, VOXEL_QUEUE_COUNT * sizeof(std::uint32_t), 0);
-        set_region(mark_small_, region);
-        mark_small_.set("first", unsigned(first));
-        mark_small_.set("count", unsigned(batch));
-        mark_small_.set("has_subset", int(has_subset));
-        mark_small_.set("thread_rows", int(thread_rows(region)));
-        mark_small_.use();
-        gl::dispatch_threads(batch, THREADS_PER_GROUP);
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-        std::array<std::uint32_t, VOXEL_QUEUE_COUNT> counts{};
-        queue_.read(0, counts.data(), sizeof(counts));
+    const std::size_t batch = std::max(limits_.triangles, 1U);
+    for (std::size_t first = 0; first < part.count; first += batch) {
+        const QueueCounts counts = mark_small(region, part, first, std::min(part.count - first, batch));
         if (counts[VOXEL_QUEUE_DOUBT] > 0) mark_doubtful(region, counts[VOXEL_QUEUE_DOUBT]);
         for (unsigned queue = VOXEL_QUEUE_SHARED; queue < VOXEL_QUEUE_SHARED + VOXEL_SHARED_CLASSES;
              ++queue) {
@@ -96,7 +104,7 @@ std::vector<MaskCandidate> ConservativeVoxelizer::mark_chunk(const Region& regio
         }
         for (const unsigned queue : {VOXEL_QUEUE_MASKED_SMALL, VOXEL_QUEUE_MASKED_LARGE}) {
             if (counts[queue] == 0) continue;
-            if (!masked_) masked_.emplace(shaders());
+            if (!masked_) masked_.emplace(shaders(), limits_);
             glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
             const std::vector<MaskCandidate> more = masked_->mark(region, queue, counts[queue]);
             undecided.insert(undecided.end(), more.begin(), more.end());
@@ -114,9 +122,7 @@ void ConservativeVoxelizer::mark(const GpuSurface& surface, const Region& region
     std::vector<glm::ivec3> voxels;
     for (std::size_t chunk = 0; chunk < surface.chunks.size(); ++chunk) {
         surface.bind(chunk);
-        if (parts[chunk].subset) parts[chunk].subset->bind_storage(SSBO_VOXEL_SUBSET);
-        const std::vector<MaskCandidate> undecided =
-            mark_chunk(region, parts[chunk].count, parts[chunk].subset.has_value());
+        const std::vector<MaskCandidate> undecided = mark_chunk(region, parts[chunk]);
         if (undecided.empty()) continue;
         const std::vector<glm::ivec3> found = decide_on_cpu(undecided, surface, chunk, region);
         voxels.insert(voxels.end(), found.begin(), found.end());

@@ -24,13 +24,21 @@ void set_region(const gl::Program& program, const Region& region) {
     program.set("voxel_shift", LATTICE_BITS - region.level);
 }
 
-MaskedMarker::MaskedMarker(const gl::ShaderSource& shaders)
+MaskedMarker::MaskedMarker(const gl::ShaderSource& shaders, const BatchLimits& limits)
     : list_(gl::build_compute(shaders, "voxelize/list_masked.comp.glsl")),
       decide_(gl::build_compute(shaders, "voxelize/decide_masked.comp.glsl")),
-      candidates_(header_bytes + sizeof(MaskCandidate) * VOXEL_CANDIDATES, "mask candidates") {}
+      limits_(limits) {}
+
+void MaskedMarker::reserve(const Region& region) {
+    const std::size_t room = std::max<std::size_t>(limits_.candidates, std::size_t(region.size.x));
+    if (room_ >= room) return;
+    room_ = room;
+    candidates_ = gl::Buffer(header_bytes + sizeof(MaskCandidate) * room_, "mask candidates");
+}
 
 std::vector<MaskCandidate> MaskedMarker::mark(const Region& region, unsigned queue, unsigned count) {
     set_region(decide_, region);
+    reserve(region);
     candidates_.bind_storage(SSBO_VOXEL_CANDIDATES);
     std::vector<MaskCandidate> undecided;
     waiting_.assign(1, {0, count, 0, unsigned(region.size.y) * unsigned(region.size.z)});
@@ -38,7 +46,7 @@ std::vector<MaskCandidate> MaskedMarker::mark(const Region& region, unsigned que
         const Work work = waiting_.back();
         waiting_.pop_back();
         const unsigned listed = list(region, queue, work);
-        if (listed <= VOXEL_CANDIDATES) {
+        if (listed <= room_) {
             decide(listed, undecided);
             continue;
         }
@@ -69,8 +77,7 @@ unsigned MaskedMarker::list(const Region& region, unsigned queue, const Work& wo
     glProgramUniform2ui(list_.id(), glGetUniformLocation(list_.id(), "row_range"), work.first_row,
                         work.last_row);
     list_.use();
-    // Threads are numbered in 32 bits.
-    const unsigned at_once = std::max(1U, (1U << 28) / slices);
+    const unsigned at_once = std::max(1U, limits_.threads / slices);
     for (unsigned done = 0; done < work.count; done += at_once) {
         const unsigned count = std::min(at_once, work.count - done);
         list_.set("first", work.first + done);

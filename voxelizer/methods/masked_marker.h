@@ -8,6 +8,7 @@
 #include "gl/buffer.h"
 #include "gl/program.h"
 #include "voxelizer/grid.h"
+#include "voxelizer/methods/voxelizer.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::voxelizer {
@@ -22,7 +23,7 @@ struct MaskCandidate {
 /// looks at the texels, one thread per voxel, because the work for a voxel varies a thousandfold.
 class MaskedMarker {
 public:
-    explicit MaskedMarker(const gl::ShaderSource& shaders);
+    MaskedMarker(const gl::ShaderSource& shaders, const BatchLimits& limits);
 
     /// Marks the voxels of the queued triangles. Bits, queue and surface must be bound.
     /// @return the candidates that the shader left to the CPU.
@@ -39,11 +40,15 @@ private:
         std::uint32_t listed, undecided;
     };
     [[nodiscard]] Header header() const;
+    /// Makes room for the candidates of a row of the region at least.
+    void reserve(const Region& region);
     [[nodiscard]] unsigned list(const Region& region, unsigned queue, const Work& work);
     void decide(unsigned count, std::vector<MaskCandidate>& undecided);
 
     gl::Program list_;
     gl::Program decide_;
+    BatchLimits limits_;
+    std::size_t room_ = 0;  ///< candidates that have room
     gl::Buffer candidates_;
     std::vector<Work> waiting_;
 };

@@ -12,7 +12,6 @@ namespace cairn::voxelizer {
 namespace {
 
 constexpr int max_side = RASTER_TARGETS * RASTER_TARGET_SLICES;
-constexpr std::size_t target_bytes = std::size_t(RASTER_TARGET_MIB) << 20;
 
 /// Voxels from the region's low corner, along one axis.
 struct Range {
@@ -29,20 +28,22 @@ Range reachable(const Region& region, int axis) {
     return range;
 }
 
-bool too_large(const RasterTile& tile, int directions) {
+bool too_large(const RasterTile& tile, int directions, std::size_t target_bytes) {
     return tile.longest_side() > max_side ||
            SliceTargets::bytes(tile.plane(directions), directions, tile.slices(directions)) > target_bytes;
 }
 
-/// Halves the longest side until the tile fits; sides stay multiples of 32, as rows need.
-glm::ivec3 tile_size(const glm::ivec3& all, int directions) {
+/// Halves the longest side until the tile fits, or is a cube of the least side: sides stay multiples of 32,
+/// as rows need.
+glm::ivec3 tile_size(const glm::ivec3& all, int directions, std::size_t target_bytes) {
     RasterTile tile;
     tile.size = all;
-    while (too_large(tile, directions)) {
+    while (too_large(tile, directions, target_bytes)) {
         int longest = 0;
         for (int axis = 1; axis < 3; ++axis) {
             if (tile.size[axis] > tile.size[longest]) longest = axis;
         }
+        if (tile.size[longest] <= 32) break;
         tile.size[longest] = ((tile.size[longest] + 1) / 2 + 31) / 32 * 32;
     }
     return tile.size;
@@ -78,7 +79,7 @@ int RasterTile::longest_side() const {
     return std::max({size.x, size.y, size.z});
 }
 
-std::vector<RasterTile> raster_tiles(const Region& region, int directions) {
+std::vector<RasterTile> raster_tiles(const Region& region, int directions, std::size_t target_bytes) {
     glm::ivec3 first(0);
     glm::ivec3 end(0);
     for (int axis = 0; axis < 3; ++axis) {
@@ -87,7 +88,7 @@ std::vector<RasterTile> raster_tiles(const Region& region, int directions) {
         first[axis] = int(range.first);
         end[axis] = int(range.end);
     }
-    const glm::ivec3 step = tile_size(end - first, directions);
+    const glm::ivec3 step = tile_size(end - first, directions, target_bytes);
     std::vector<RasterTile> tiles;
     for (int z = first.z; z < end.z; z += step.z) {
         for (int y = first.y; y < end.y; y += step.y) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -28,9 +29,10 @@ struct RasterTile {
 };
 
 /// Cuts a region so that each part has at most 1024 slices in each direction that is used, and needs render
-/// targets of at most RASTER_TARGET_MIB. Parts of the region that no vertex of a surface can reach are left
-/// out.
+/// targets of at most `target_bytes`, or is as small as a part can be. Parts of the region that no vertex of
+/// a surface can reach are left out.
 /// @param directions  1: along z alone; 3: along x, y and z
-[[nodiscard]] std::vector<RasterTile> raster_tiles(const Region& region, int directions);
+[[nodiscard]] std::vector<RasterTile> raster_tiles(const Region& region, int directions,
+                                                   std::size_t target_bytes);
 
 }  // namespace cairn::voxelizer

@@ -16,10 +16,20 @@
 namespace cairn::voxelizer {
 namespace {
 
-/// Words per list of shaders/voxelize/raster_lists.glsl, and words of all lists.
-constexpr std::size_t list_words = 3 * std::size_t(VOXEL_BATCH_TRIANGLES);
-constexpr std::size_t all_list_words =
-    RASTER_KINDS + RASTER_KINDS * (list_words + std::size_t(VOXEL_BATCH_TRIANGLES));
+/// Triangles that are listed in one pass.
+std::size_t batch_triangles(const BatchLimits& limits) {
+    return std::max(limits.triangles, 1U);
+}
+
+/// Vertex numbers per list of shaders/voxelize/raster_lists.glsl.
+std::size_t list_words(const BatchLimits& limits) {
+    return 3 * batch_triangles(limits);
+}
+
+/// All lists: of each the length, the vertices and the triangles.
+std::size_t list_bytes(const BatchLimits& limits) {
+    return RASTER_KINDS * (1 + list_words(limits) + batch_triangles(limits)) * sizeof(std::uint32_t);
+}
 
 int corners_of(unsigned kind) {
     return kind == RASTER_SEGMENTS ? 2 : kind == RASTER_POINTS ? 1 : 3;
@@ -83,9 +93,11 @@ bool RasterVoxelizer::has_vertex_path() {
     return blocks >= needed && has_extension("GL_ARB_shader_viewport_layer_array");
 }
 
-RasterVoxelizer::RasterVoxelizer(Method method, const gl::ShaderSource& shaders, LayerPath path)
+RasterVoxelizer::RasterVoxelizer(Method method, const gl::ShaderSource& shaders, LayerPath path,
+                                 const BatchLimits& limits)
     : Voxelizer(shaders),
       method_(method),
+      limits_(limits),
       vertex_path_(takes_vertex_path(path)),
       list_(gl::build_compute(shaders, "voxelize/list_primitives.comp.glsl")),
       unite_along_x_(gl::build_compute(shaders, "voxelize/unite_slices.comp.glsl", {{"ALONG_X", "1"}})),
@@ -98,7 +110,7 @@ RasterVoxelizer::RasterVoxelizer(Method method, const gl::ShaderSource& shaders,
                      : gl::build_raster(shaders, "voxelize/feed.vert.glsl", "voxelize/slice.frag.glsl",
                                         "voxelize/project.geom.glsl", macros);
       }),
-      lists_(all_list_words * sizeof(std::uint32_t), "primitives to rasterize") {
+      lists_(list_bytes(limits), "primitives to rasterize") {
     GLuint vertex_array = 0;
     glCreateVertexArrays(1, &vertex_array);
     vertex_array_ = gl::VertexArrayHandle(vertex_array);
@@ -126,7 +138,7 @@ void RasterVoxelizer::mark(const GpuSurface& surface, const Region& region, std:
     const gl::DrawStateGuard guard;
     glBindVertexArray(vertex_array_.id());
     glLogicOp(GL_OR);
-    for (const RasterTile& tile : raster_tiles(region, directions())) {
+    for (const RasterTile& tile : raster_tiles(region, directions(), limits_.target_bytes)) {
         const glm::ivec2 plane = tile.plane(directions());
         const int slices = tile.slices(directions());
         if (!targets_.fits(plane, directions(), slices)) {
@@ -157,9 +169,10 @@ void RasterVoxelizer::draw_chunk(const gl::Buffer& positions, const RasterTile& 
                                  bool masked) {
     if (!vertex_path_)
         glVertexArrayVertexBuffer(vertex_array_.id(), 0, positions.id(), 0, 3 * sizeof(std::int32_t));
-    for (std::size_t first = 0; first < part.count; first += VOXEL_BATCH_TRIANGLES) {
+    const std::size_t batch = batch_triangles(limits_);
+    for (std::size_t first = 0; first < part.count; first += batch) {
         if (part.subset) part.subset->bind_storage(SSBO_VOXEL_SUBSET);
-        const std::size_t count = std::min<std::size_t>(part.count - first, VOXEL_BATCH_TRIANGLES);
+        const std::size_t count = std::min(part.count - first, batch);
         const Counts counts = list_batch(tile, first, count, part.subset.has_value());
         for (unsigned kind = 0; kind < RASTER_KINDS; ++kind) {
             if (counts[kind] > 0) draw_list(kind, counts[kind], tile, masked);
@@ -169,6 +182,8 @@ void RasterVoxelizer::draw_chunk(const gl::Buffer& positions, const RasterTile& 
 
 RasterVoxelizer::Counts RasterVoxelizer::list_batch(const RasterTile& tile, std::size_t first,
                                                     std::size_t count, bool has_subset) {
+    // Fragments of the batch before may still read the lists.
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     lists_.fill(0, sizeof(Counts), 0);
     list_.set("first", unsigned(first));
     list_.set("count", unsigned(count));
@@ -206,7 +221,7 @@ void RasterVoxelizer::draw_list(unsigned kind, unsigned count, const RasterTile&
         const int instances = is_conservative() ? 1 : directions();
         glDrawArraysInstanced(mode, 0, GLsizei(count * vertices), instances);
     } else {
-        const std::size_t first = (RASTER_KINDS + kind * list_words) * sizeof(std::uint32_t);
+        const std::size_t first = (RASTER_KINDS + kind * list_words(limits_)) * sizeof(std::uint32_t);
         glDrawElements(mode, GLsizei(count * corners_of(kind)), GL_UNSIGNED_INT, gl::buffer_offset(first));
     }
 }

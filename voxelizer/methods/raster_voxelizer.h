@@ -63,14 +63,14 @@ struct RasterVariant {
 /// Lines to points more than 2^16 voxels away are bent by the driver's rounding. A point within a float's
 /// rounding of a boundary may fall to another side of it in another region.
 ///
-/// Memory: targets of one bit per voxel and direction, at most RASTER_TARGET_MIB at a time, and 16 MiB of
-/// lists.
+/// Memory: targets of one bit per voxel and direction, at most BatchLimits::target_bytes at a time, and 16
+/// MiB of lists.
 class RasterVoxelizer final : public Voxelizer {
 public:
     /// @param method  one of the three above
     /// @throws Error  Fault::context if the driver does not offer `path`.
     explicit RasterVoxelizer(Method method, const gl::ShaderSource& shaders = {},
-                             LayerPath path = LayerPath::geometry_shader);
+                             LayerPath path = LayerPath::geometry_shader, const BatchLimits& limits = {});
 
     /// Whether the current driver offers LayerPath::vertex_shader.
     [[nodiscard]] static bool has_vertex_path();
@@ -91,6 +91,7 @@ private:
     [[nodiscard]] int directions() const { return method_ == Method::slice_map ? 1 : 3; }
 
     Method method_;
+    BatchLimits limits_;
     bool vertex_path_;
     gl::Program list_;
     gl::Program unite_along_x_;

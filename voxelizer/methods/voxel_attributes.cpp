@@ -22,8 +22,6 @@ namespace {
 
 constexpr std::size_t header_bytes = 4 * sizeof(std::uint32_t);  // shaders/voxelize/attribute_pairs.glsl
 constexpr std::size_t pair_bytes = 4 * sizeof(std::uint32_t);
-constexpr std::size_t queue_bytes =
-    (VOXEL_QUEUE_COUNT + std::size_t(VOXEL_BATCH_TRIANGLES)) * sizeof(std::uint32_t);
 
 void check(const GpuSurface& surface, const Region& region, const BitGrid& bits) {
     if (bits.size != region.size)
@@ -49,23 +47,17 @@ void set(const gl::Program& program, const char* name, unsigned x, unsigned y) {
     glProgramUniform2ui(program.id(), glGetUniformLocation(program.id(), name), x, y);
 }
 
-/// Triangles of a subset that lie in one chunk, by the chunk's own numbers.
-std::vector<std::uint32_t> subset_in_chunk(std::span<const std::uint32_t> subset, std::size_t chunk) {
-    std::vector<std::uint32_t> out;
-    for (const std::uint32_t triangle : subset)
-        if (triangle / SURFACE_CHUNK_TRIANGLES == chunk) out.push_back(triangle % SURFACE_CHUNK_TRIANGLES);
-    return out;
-}
-
 }  // namespace
 
-AttributeVoxelizer::AttributeVoxelizer(const gl::ShaderSource& shaders)
-    : list_small_(gl::build_compute(shaders, "voxelize/list_pairs.comp.glsl", {{"LARGE", "0"}})),
+AttributeVoxelizer::AttributeVoxelizer(const gl::ShaderSource& shaders, const BatchLimits& limits)
+    : limits_(limits),
+      list_small_(gl::build_compute(shaders, "voxelize/list_pairs.comp.glsl", {{"LARGE", "0"}})),
       list_large_(gl::build_compute(shaders, "voxelize/list_pairs.comp.glsl", {{"LARGE", "1"}})),
       gather_(gl::build_compute(shaders, "voxelize/gather_attributes.comp.glsl", {{"HAS_MASK", "0"}})),
       gather_masked_(gl::build_compute(shaders, "voxelize/gather_attributes.comp.glsl", {{"HAS_MASK", "1"}})),
-      queue_(queue_bytes, "attribute queue"),
-      pairs_(header_bytes + pair_bytes * ATTRIBUTE_PAIRS, "attribute pairs") {}
+      // All in the first queue, which the layout of the others leaves a batch of room.
+      queue_(VOXEL_QUEUE_COUNT * (1 + std::size_t(std::max(limits.triangles, 1U))) * sizeof(std::uint32_t),
+             "attribute queue") {}
 
 void AttributeVoxelizer::ChunkBinding::bind() const {
     chunk.positions.bind_storage(SSBO_SURFACE_POSITIONS);
@@ -97,7 +89,7 @@ VoxelAttributes AttributeVoxelizer::gather(const GpuSurface& surface, const Regi
                 gather_chunk(chunk, region, part, chunk.chunk.triangle_count, nullptr);
                 continue;
             }
-            const std::vector<std::uint32_t> local = subset_in_chunk(*subset, i);
+            const std::vector<std::uint32_t> local = surface.subset_in_chunk(*subset, i);
             const gl::Buffer buffer =
                 gl::Buffer::of(std::span<const std::uint32_t>(local), "attribute subset");
             gather_chunk(chunk, region, part, local.size(), &buffer);
@@ -108,7 +100,15 @@ VoxelAttributes AttributeVoxelizer::gather(const GpuSurface& surface, const Regi
     return out;
 }
 
+void AttributeVoxelizer::reserve_pairs(const Region& region) {
+    const std::size_t room = std::max<std::size_t>(limits_.pairs, std::size_t(region.size.x));
+    if (pair_room_ >= room) return;
+    pair_room_ = room;
+    pairs_ = gl::Buffer(header_bytes + pair_bytes * pair_room_, "attribute pairs");
+}
+
 void AttributeVoxelizer::prepare(const Region& region, const BitGrid& bits) {
+    reserve_pairs(region);
     std::vector<std::uint32_t> ranks;
     ranks.reserve(bits.words.size() / VOXEL_RANK_WORDS + 1);
     const std::size_t slice_words = std::size_t(bits.words_per_row()) * std::size_t(bits.size.y);
@@ -126,7 +126,8 @@ void AttributeVoxelizer::prepare(const Region& region, const BitGrid& bits) {
 }
 
 AttributeVoxelizer::Part AttributeVoxelizer::part_from(std::uint32_t first, const BitGrid& bits) const {
-    Part part{first, std::min<std::uint32_t>(slice_ranks_.back(), first + ATTRIBUTE_PART_VOXELS), {}};
+    Part part{
+        first, std::min<std::uint32_t>(slice_ranks_.back(), first + std::max(limits_.part_voxels, 1U)), {}};
     const auto slice_of = [&](std::uint32_t rank) {
         return int(std::upper_bound(slice_ranks_.begin(), slice_ranks_.end(), rank) - slice_ranks_.begin()) -
                1;
@@ -143,10 +144,11 @@ void AttributeVoxelizer::gather_chunk(const ChunkBinding& chunk, const Region& r
     }
     subset_ = subset;
     list_small_.set("has_subset", int(subset != nullptr));
-    // If pairs find no room, half of the triangles are listed anew; for few triangles there is always room.
+    // If pairs find no room, half of the triangles are listed anew. One triangle that is not queued always
+    // has room.
     std::vector<Work> waiting;
     for (std::size_t end = count; end > 0;) {
-        const std::size_t batch = std::min<std::size_t>(end, VOXEL_BATCH_TRIANGLES);
+        const std::size_t batch = std::min<std::size_t>(end, std::max(limits_.triangles, 1U));
         end -= batch;
         waiting.push_back({unsigned(end), unsigned(batch), 0, 0});
     }
@@ -155,7 +157,7 @@ void AttributeVoxelizer::gather_chunk(const ChunkBinding& chunk, const Region& r
         waiting.pop_back();
         queue_.fill(0, VOXEL_QUEUE_COUNT * sizeof(std::uint32_t), 0);
         const unsigned listed = list(list_small_, chunk, work, 1);
-        if (listed > ATTRIBUTE_PAIRS) {
+        if (listed > pair_room_) {
             const unsigned half = work.count / 2;
             waiting.push_back({work.first, half, 0, 0});
             waiting.push_back({work.first + half, work.count - half, 0, 0});
@@ -170,16 +172,15 @@ void AttributeVoxelizer::gather_chunk(const ChunkBinding& chunk, const Region& r
 void AttributeVoxelizer::gather_queued(const ChunkBinding& chunk, const Region& region, unsigned count) {
     // The loops of a thread over rows and voxels stay far from the limit that VOXEL_REGION_SIDE keeps.
     const unsigned rows_per_thread = std::max(1U, unsigned(VOXEL_REGION_SIDE / (16 * region.size.x)));
-    constexpr unsigned most_threads = 1U << 24;
     std::vector<Work> waiting = {{0, count, 0, unsigned(region.size.y) * unsigned(region.size.z)}};
     while (!waiting.empty()) {
         const Work work = waiting.back();
         waiting.pop_back();
         const unsigned rows = work.last_row - work.first_row;
         const unsigned slices = (rows + rows_per_thread - 1) / rows_per_thread;
-        const bool too_long = std::uint64_t(slices) * work.count > most_threads && work.count > 1;
+        const bool too_long = std::uint64_t(slices) * work.count > limits_.threads && work.count > 1;
         const unsigned listed = too_long ? 0 : list(list_large_, chunk, work, slices);
-        if (!too_long && listed <= ATTRIBUTE_PAIRS) {
+        if (!too_long && listed <= pair_room_) {
             gather_pairs(chunk, region, listed);
             continue;
         }

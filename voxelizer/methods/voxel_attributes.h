@@ -10,6 +10,7 @@
 #include "voxelizer/bit_grid.h"
 #include "voxelizer/files/voxel_writer.h"
 #include "voxelizer/grid.h"
+#include "voxelizer/methods/voxelizer.h"
 #include "voxelizer/surface/surface.h"
 
 namespace cairn::voxelizer {
@@ -28,7 +29,7 @@ namespace cairn::voxelizer {
 /// region.
 class AttributeVoxelizer {
 public:
-    explicit AttributeVoxelizer(const gl::ShaderSource& shaders = {});
+    explicit AttributeVoxelizer(const gl::ShaderSource& shaders = {}, const BatchLimits& limits = {});
 
     /// @param surface  built with SurfaceOptions::attributes
     /// @param bits     bits of the region. An occupied voxel that no triangle of the surface touches (inside
@@ -58,6 +59,8 @@ private:
         void bind() const;
     };
 
+    /// Makes room for the pairs of a row of the region at least.
+    void reserve_pairs(const Region& region);
     void prepare(const Region& region, const BitGrid& bits);
     [[nodiscard]] Part part_from(std::uint32_t first, const BitGrid& bits) const;
     void gather_chunk(const ChunkBinding& chunk, const Region& region, const Part& part, std::size_t count,
@@ -69,11 +72,13 @@ private:
     void gather_pairs(const ChunkBinding& chunk, const Region& region, unsigned count);
     void read_sums(const Part& part, VoxelAttributes& out) const;
 
+    BatchLimits limits_;
     gl::Program list_small_;
     gl::Program list_large_;
     gl::Program gather_;
     gl::Program gather_masked_;
     gl::Buffer queue_;
+    std::size_t pair_room_ = 0;  ///< pairs that have room
     gl::Buffer pairs_;
     gl::Buffer bits_;
     gl::Buffer ranks_;

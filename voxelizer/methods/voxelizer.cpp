@@ -53,15 +53,6 @@ void check_region(const Region& region) {
         fmt::format("{0} x {0} x {0} would fit", side));
 }
 
-/// The part of a subset that lies in one chunk, by the chunk's own numbers.
-std::vector<std::uint32_t> subset_in_chunk(std::span<const std::uint32_t> subset, std::size_t chunk) {
-    std::vector<std::uint32_t> out;
-    for (const std::uint32_t triangle : subset) {
-        if (triangle / SURFACE_CHUNK_TRIANGLES == chunk) out.push_back(triangle % SURFACE_CHUNK_TRIANGLES);
-    }
-    return out;
-}
-
 }  // namespace
 
 Method method_named(std::string_view name) {
@@ -90,14 +81,15 @@ std::span<const Method> methods() {
     return all;
 }
 
-std::unique_ptr<Voxelizer> make_voxelizer(Method method, const gl::ShaderSource& shaders) {
+std::unique_ptr<Voxelizer> make_voxelizer(Method method, const gl::ShaderSource& shaders,
+                                          const BatchLimits& limits) {
     switch (method) {
         case Method::conservative:
-            return std::make_unique<ConservativeVoxelizer>(shaders);
+            return std::make_unique<ConservativeVoxelizer>(shaders, limits);
         case Method::slice_map:
         case Method::three_axis:
         case Method::three_axis_conservative:
-            return std::make_unique<RasterVoxelizer>(method, shaders);
+            return std::make_unique<RasterVoxelizer>(method, shaders, LayerPath::geometry_shader, limits);
     }
     throw Error(Fault::internal, "make_voxelizer", "a method that is not one");
 }
@@ -121,7 +113,7 @@ void Voxelizer::mark_timed(const GpuSurface& surface, const Region& region,
     for (std::size_t chunk = 0; chunk < parts_.size(); ++chunk) {
         parts_[chunk].count = surface.chunks[chunk].triangle_count;
         if (!subset) continue;
-        const std::vector<std::uint32_t> local = subset_in_chunk(*subset, chunk);
+        const std::vector<std::uint32_t> local = surface.subset_in_chunk(*subset, chunk);
         parts_[chunk] = {local.size(), gl::Buffer::of(std::span<const std::uint32_t>(local), "voxel subset")};
     }
     glFinish();

@@ -37,6 +37,18 @@ enum class Method : std::uint8_t {
 /// All methods, in the order of the enumeration.
 [[nodiscard]] std::span<const Method> methods();
 
+/// How much of a voxelization is done at a time. No voxel and no attribute depends on these numbers: they
+/// bound the buffers and the time of a dispatch. A number under the least is taken for the least.
+struct BatchLimits {
+    std::uint32_t triangles = 1U << 18U;    ///< triangles that are marked in one pass; at least 1
+    std::uint32_t candidates = 1U << 20U;   ///< voxels of masked triangles in one pass; at least a row's
+    std::uint32_t pairs = 1U << 20U;        ///< pairs of triangle and voxel in one pass; at least a row's
+    std::uint32_t part_voxels = 1U << 20U;  ///< voxels whose attributes are gathered at a time; at least 1
+    std::uint32_t threads = 1U << 24U;      ///< threads that share queued triangles; at least one triangle's
+    /// Render targets of a raster method; at least those of a tile of 32^3 voxels.
+    std::size_t target_bytes = std::size_t(256) << 20U;
+};
+
 /// Marks the voxels of a surface on the GPU, by one of the methods. Needs the current context of its
 /// construction.
 class Voxelizer {
@@ -104,6 +116,7 @@ private:
     double last_milliseconds_ = 0.0;
 };
 
-[[nodiscard]] std::unique_ptr<Voxelizer> make_voxelizer(Method method, const gl::ShaderSource& shaders = {});
+[[nodiscard]] std::unique_ptr<Voxelizer> make_voxelizer(Method method, const gl::ShaderSource& shaders = {},
+                                                        const BatchLimits& limits = {});
 
 }  // namespace cairn::voxelizer

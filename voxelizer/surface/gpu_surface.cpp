@@ -18,6 +18,7 @@ GpuSurface upload(const Surface& surface) {
     GpuSurface out;
     for (const SurfaceChunk& chunk : surface.chunks)
         out.chunks.push_back(upload_chunk(chunk));
+    out.chunk_triangles = surface.chunk_triangles;
     out.far_triangles = surface.far_triangles;
     out.materials = upload_array(surface.materials, "surface materials", limit);
     out.texels = upload_array(surface.texels, "surface texels", limit);
@@ -32,6 +33,15 @@ void GpuSurface::bind(const GpuSurfaceChunk& chunk) const {
     chunk.attributes.bind_storage(SSBO_SURFACE_ATTRIBUTES);
     materials.bind_storage(SSBO_SURFACE_MATERIALS);
     texels.bind_storage(SSBO_SURFACE_TEXELS);
+}
+
+std::vector<std::uint32_t> GpuSurface::subset_in_chunk(std::span<const std::uint32_t> subset,
+                                                       std::size_t chunk) const {
+    std::vector<std::uint32_t> out;
+    for (const std::uint32_t triangle : subset) {
+        if (triangle / chunk_triangles == chunk) out.push_back(triangle % chunk_triangles);
+    }
+    return out;
 }
 
 std::size_t GpuSurface::size_bytes() const {

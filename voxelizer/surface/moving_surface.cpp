@@ -59,14 +59,15 @@ MovingSurface::Impl::Impl(const scenes::Scene& scene, const scenes::When& when, 
     : scene_(scene),
       when_(when),
       grid_(grid),
-      options_{.attributes = options.attributes},
+      options_{.attributes = options.attributes, .chunk_triangles = options.chunk_triangles},
       poser_(scene, scenes::animation_of(scene, when)),
       deform_(gl::build_compute(shaders, "voxelize/deform.comp.glsl",
                                 {{"NORMALS", options.attributes ? "1" : "0"}})),
       find_far_(gl::build_compute(shaders, "voxelize/find_far.comp.glsl")) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene, when);
-    const Surface surface =
-        build_surface(scene, snapshot, grid, {.attributes = options.attributes, .unplaced = true});
+    const Surface surface = build_surface(
+        scene, snapshot, grid,
+        {.attributes = options.attributes, .unplaced = true, .chunk_triangles = options.chunk_triangles});
     triangle_count_ = surface.triangle_count;
     on_gpu_ = upload(surface);
     for (const scenes::Item& item : snapshot.items)

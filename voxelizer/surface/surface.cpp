@@ -196,11 +196,11 @@ private:
 void append(Surface& surface, const SurfaceChunk& part) {
     std::vector<std::int32_t> numbers;
     for (std::size_t first = 0; first < part.triangles.size();) {
-        if (surface.chunks.empty() || surface.chunks.back().triangles.size() == SURFACE_CHUNK_TRIANGLES) {
+        if (surface.chunks.empty() || surface.chunks.back().triangles.size() == surface.chunk_triangles) {
             surface.chunks.emplace_back();
         }
         SurfaceChunk& chunk = surface.chunks.back();
-        const std::size_t room = SURFACE_CHUNK_TRIANGLES - chunk.triangles.size();
+        const std::size_t room = surface.chunk_triangles - chunk.triangles.size();
         const std::size_t last = std::min(part.triangles.size(), first + room);
         numbers.assign(part.positions.size(), -1);
         for (; first < last; ++first) {
@@ -290,6 +290,7 @@ Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapsh
         SurfaceMaterials materials(scene, snapshot, options.attributes);
         Surface surface;
         surface.grid = grid;
+        surface.chunk_triangles = std::clamp(options.chunk_triangles, 1U, surface_chunk_triangles);
         surface.has_color = materials.has_color;
         surface.uniform_color = materials.uniform_color;
         SurfaceOptions wanted = options;

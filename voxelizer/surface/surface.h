@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -26,7 +27,10 @@ struct SurfaceSource {
     std::uint32_t vertex;  ///< index into Item::positions
 };
 
-/// At most SURFACE_CHUNK_TRIANGLES triangles and the vertices they use.
+/// Triangles of a chunk: its buffers stay under the smallest shader-storage limit in use (128 MiB).
+constexpr std::uint32_t surface_chunk_triangles = 1U << 21U;
+
+/// At most Surface::chunk_triangles triangles and the vertices they use.
 struct SurfaceChunk {
     std::vector<std::array<std::int32_t, 3>> positions;  ///< lattice units, within [-2^24, 2^25]
     std::vector<interop::SurfaceTriangle> triangles;
@@ -59,7 +63,9 @@ struct FarTriangle {
 /// left out. Vertices go counter-clockwise seen from the front, in mirrored nodes too.
 struct Surface {
     Grid grid;
+    /// A triangle's global number is chunk * chunk_triangles + its number in the chunk.
     std::vector<SurfaceChunk> chunks;
+    std::uint32_t chunk_triangles = surface_chunk_triangles;
     std::vector<FarTriangle> far_triangles;
     /// Triangles that miss the root cube but lie before or behind it along an axis (SurfaceOptions::outside).
     std::vector<std::array<glm::i64vec3, 3>> outside_triangles;
@@ -91,6 +97,8 @@ struct SurfaceOptions {
     /// Keeps all triangles, wherever they are, with `sources`, and leaves positions and normals 0, for
     /// MovingSurface to fill in.
     bool unplaced = false;
+    /// Triangles per chunk at most, from 1 to surface_chunk_triangles. No voxel depends on it.
+    std::uint32_t chunk_triangles = surface_chunk_triangles;
 };
 
 /// @throws Error  Fault::memory if the surface would not fit in memory; Fault::input if a vertex lies past
@@ -111,6 +119,7 @@ struct GpuSurfaceChunk {
 };
 struct GpuSurface {
     std::vector<GpuSurfaceChunk> chunks;
+    std::uint32_t chunk_triangles = surface_chunk_triangles;  ///< as in Surface
     std::vector<FarTriangle> far_triangles;
     gl::Buffer materials;
     gl::Buffer texels;
@@ -121,6 +130,11 @@ struct GpuSurface {
     void bind(std::size_t chunk) const { bind(chunks[chunk]); }
     /// Binds SSBO_SURFACE_* for a chunk of this surface, or for other triangles with the same materials.
     void bind(const GpuSurfaceChunk& chunk) const;
+    /// The triangles of a subset that lie in one chunk.
+    /// @param subset  global numbers of triangles
+    /// @return        their numbers in the chunk
+    [[nodiscard]] std::vector<std::uint32_t> subset_in_chunk(std::span<const std::uint32_t> subset,
+                                                             std::size_t chunk) const;
     [[nodiscard]] std::size_t size_bytes() const;
 };
 

@@ -43,7 +43,7 @@ TriangleIndex::TriangleIndex(const Surface& surface, const TriangleIndexOptions&
             root_.triangles.push_back(std::uint32_t(boxes_.size()));
             boxes_.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
         }
-        chunk_first += SURFACE_CHUNK_TRIANGLES;
+        chunk_first += surface.chunk_triangles;
     }
     for (const FarTriangle& triangle : surface.far_triangles) {
         const auto& [a, b, c] = triangle.positions;

@@ -15,6 +15,7 @@
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
+#include "tests/support/produced_brick.h"
 #include "tests/support/test_scenes.h"
 #include "tests/support/voxel_renderer.h"
 
@@ -35,24 +36,6 @@ protected:
     static constexpr int m = 8;
     static constexpr std::size_t slot_bytes(bool has_color) { return 1000 * (has_color ? 8 : 5) + 9 * 8; }
 
-    /// All bytes of a slot, layer by layer, then its masks.
-    static std::vector<std::uint8_t> read(const BrickPool& pool, int slot) {
-        std::vector<std::uint8_t> bytes;
-        glPixelStorei(GL_PACK_ALIGNMENT, 1);
-        for (const BrickPool::Layer& layer : pool.layers()) {
-            const glm::ivec3 low = pool.first_texel(slot, layer.mip);
-            const int size = layer.side * layer.side * layer.side * layer.texel_bytes;
-            bytes.resize(bytes.size() + std::size_t(size));
-            glGetTextureSubImage(layer.texture, 0, low.x, low.y, low.z, layer.side, layer.side, layer.side,
-                                 layer.format, layer.type, size, &bytes[bytes.size() - std::size_t(size)]);
-        }
-        glPixelStorei(GL_PACK_ALIGNMENT, 4);
-        const std::size_t mask_bytes = pool.mask_bytes_per_slot();
-        const std::vector<std::uint8_t> masks =
-            pool.masks().read_all<std::uint8_t>(mask_bytes, std::size_t(slot) * mask_bytes);
-        bytes.insert(bytes.end(), masks.begin(), masks.end());
-        return bytes;
-    }
     /// Random bytes in all of a slot.
     static void scribble(const BrickPool& pool, int slot, Random& random) {
         auto noise = [&](std::size_t count) {
@@ -85,7 +68,7 @@ void BrickCacheTest::expect_bricks_back(const BrickPool& pool) {
     std::vector<renderer::Tree::EvictedBrick> evicted;
     for (int slot = 0; slot < pool.slot_count(); ++slot) {
         scribble(pool, slot, random);
-        bricks.push_back(read(pool, slot));
+        bricks.push_back(slot_content(pool, slot));
         evicted.push_back({tile(slot), slot});
     }
     cache.store(evicted);
@@ -93,11 +76,11 @@ void BrickCacheTest::expect_bricks_back(const BrickPool& pool) {
         scribble(pool, slot, random);
     const int last = pool.slot_count() - 1;
     for (int slot = 0; slot <= last; ++slot) {
-        const std::vector<std::uint8_t> neighbour = read(pool, slot);
+        const std::vector<std::uint8_t> neighbour = slot_content(pool, slot);
         ASSERT_TRUE(cache.restore(tile(slot), last - slot)) << "slot " << slot;
-        EXPECT_EQ(read(pool, last - slot), bricks[std::size_t(slot)]) << "slot " << slot;
+        EXPECT_EQ(slot_content(pool, last - slot), bricks[std::size_t(slot)]) << "slot " << slot;
         if (slot != last - slot) {
-            EXPECT_EQ(read(pool, slot), neighbour) << "it wrote past its slot";
+            EXPECT_EQ(slot_content(pool, slot), neighbour) << "it wrote past its slot";
         }
     }
     EXPECT_FALSE(cache.restore(tile(1000), 0));

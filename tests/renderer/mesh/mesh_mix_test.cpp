@@ -306,7 +306,7 @@ TEST_F(MeshMix, RowsFromTwoStripsOfAMeshAreThoseOfEachAlone) {
     Everything all;
     all.view.size.width = 4096;
     all.view.size.height = 2048;
-    const int border = MESH_STRIP_PIXELS / all.view.size.width;
+    const int border = renderer::MeshRasterLimits().strip_pixels / all.view.size.width;
     ASSERT_LT(border, all.view.size.height);
     all.mix.proxy = nullptr;
     Renderer renderer = all.renderer();

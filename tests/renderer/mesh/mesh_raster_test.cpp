@@ -14,6 +14,7 @@
 #include "shaders/interop/mesh.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/mesh_rays.h"
+#include "tests/support/mixed_scene.h"
 #include "tests/support/test_scenes.h"
 
 namespace cairn::test {
@@ -267,6 +268,57 @@ TEST_F(MeshRasterTest, ANarrowLensFarAwaySeesDistancesFromWhereItsRaysStart) {
     EXPECT_GT(covered, 1000);
 }
 
+/// The texels of all strips of a picture, from top to bottom.
+struct WholeMesh {
+    std::vector<float> nearest;
+    std::vector<glm::uvec4> look;
+    std::vector<glm::vec2> span;
+    std::vector<float> faces;
+    bool operator==(const WholeMesh&) const = default;
+};
+
+WholeMesh whole_mesh(MeshRaster& mesh, const View& view, const ViewSpace& space) {
+    const interop::MarchView marched = march_view(view, space);
+    const int width = view.size.width;
+    WholeMesh whole;
+    const auto append = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+    for (int row = 0; row < view.size.height;) {
+        const MeshSurface surface = mesh.draw_surface(marched, space, row);
+        append(whole.nearest, read_nearest(surface, width));
+        append(whole.look,
+               read<glm::uvec4>(surface.surface, width, surface.rows, GL_RGBA_INTEGER, GL_UNSIGNED_INT));
+        const MeshSpan span = mesh.draw_span(marched, space, row);
+        append(whole.span, read<glm::vec2>(span.span, width, span.rows, GL_RG, GL_FLOAT));
+        append(whole.faces, read<float>(span.faces, width, span.rows, GL_RED, GL_FLOAT));
+        row = surface.first_row + surface.rows;
+    }
+    return whole;
+}
+
+TEST_F(MeshRasterTest, BatchesChunksAndStripsOfAnySizeGiveTheSamePicture) {
+    const scenes::Scene scene = mixed_scene(501);
+    const voxelizer::Grid grid{glm::dvec3(0.0), 1.0 / 64, glm::ivec3(64)};
+    const View view = view_of({"", {1.7, 1.2, 2.0}, {0.5, 0.5, 0.5}, 0.7});
+    const ViewSpace space{{0.0, 0.0, 0.0}, 0.01};
+    const auto drawn = [&](std::uint32_t chunk_triangles, const renderer::MeshRasterLimits& limits) {
+        const voxelizer::GpuSurface surface =
+            upload(build_surface(scene, scenes::take_snapshot(scene), grid,
+                                 {.attributes = true, .chunk_triangles = chunk_triangles}));
+        MeshRaster mesh(surface, grid, {}, limits);
+        return whole_mesh(mesh, view, space);
+    };
+    const WholeMesh truth = drawn(voxelizer::surface_chunk_triangles, {});
+    ASSERT_EQ(truth.nearest.size(), std::size_t(view.size.width) * std::size_t(view.size.height));
+    EXPECT_GT(std::ranges::count_if(truth.nearest, [](float t) { return t < float(MESH_MISS); }), 1000);
+    for (const std::uint32_t number : {0U, 2U, 3U, 64U}) {
+        EXPECT_TRUE(drawn(voxelizer::surface_chunk_triangles, {.triangles = number}) == truth)
+            << number << " triangles at a time";
+        EXPECT_TRUE(drawn(std::max(number, 1U), {.triangles = 3}) == truth) << "chunks of " << number;
+        EXPECT_TRUE(drawn(voxelizer::surface_chunk_triangles, {.strip_pixels = int(number) * 100}) == truth)
+            << "strips of " << number * 100 << " pixels";
+    }
+}
+
 TEST_F(MeshRasterTest, RowsDrawnApartAreThoseOfOnePicture) {
     // The picture is so wide that two strips share it: the rows on both sides of their border fit one plane.
     const scenes::Scene scene = sheet(glm::vec4(1.0F));
@@ -275,7 +327,7 @@ TEST_F(MeshRasterTest, RowsDrawnApartAreThoseOfOnePicture) {
     const ViewSpace space{{-1.0, -1.0, -1.0}, 0.01};
     MeshRaster mesh(scene, snapshot);
     const interop::MarchView marched = march_view(view, space);
-    const int border = MESH_STRIP_PIXELS / 16384;
+    const int border = renderer::MeshRasterLimits().strip_pixels / 16384;
     const MeshSurface above = mesh.draw_surface(marched, space, border - 1);
     ASSERT_EQ(above.first_row, 0);
     ASSERT_EQ(above.rows, border);
