@@ -183,7 +183,7 @@ void TriangleIndex::gather_listed(const Cell& cell, const Node& node, const Quer
             continue;
         }
         const glm::ivec3 shared = glm::clamp(glm::max(box.low, query.low_inside), 0, (1 << LATTICE_BITS) - 1);
-        if (shared >> shift_of(cell) == cell.position) out.push_back(triangle);
+        if ((shared >> shift_of(cell)) == cell.position) out.push_back(triangle);
     }
 }
 
