@@ -220,9 +220,9 @@ TEST(SolidFill, OfAnOpenSheetIsNothing) {
 }
 
 TEST(SolidFill, OfTwoSheetsThatFaceEachOtherIsNothing) {
-    const std::int64_t s = lattice_side;
+    constexpr std::int64_t s = lattice_side;
     const Region region = cube(5);
-    const auto square = [s](std::int64_t x) {
+    const auto square = [](std::int64_t x) {
         return Mesh{{glm::i64vec3(x, 0, 0), {x, s, 0}, {x, s, s}},
                     {glm::i64vec3(x, 0, 0), {x, s, s}, {x, 0, s}}};
     };

@@ -206,7 +206,7 @@ TEST_F(ProducedColor, TwoFacesInAVoxelKeepTheirNormals) {
         Sheets sheets;
         sheets.add(4.6, 3.05, 3.7, 4.05, 4.95, red);
         sheets.add(4.6, 3.8, 3.95, 4.05, 4.95, red);
-        sheets.set_attributes([&](interop::SurfaceAttributes& attributes, double x) {
+        sheets.set_attributes([&, other = other](interop::SurfaceAttributes& attributes, double x) {
             attributes.normal = x < 3.75 ? along_y : other;
         });
         const ProducedBrick brick = sheets.brick();
