@@ -39,8 +39,7 @@ SoftShadowOptions map_of(int size, ShadowPasses passes, ShadowFormat format = Sh
 class Placed {
 public:
     Placed(const ShadowOccluder& occluder, const ShadowPlacement& placement)
-        : occluder_(occluder),
-          study_(occluder, placement),
+        : study_(occluder, placement),
           mesh_(occluder.scene(), occluder.snapshot()),
           points_(shadow_points(map(map_of(64, ShadowPasses::one)))),
           truth_(bench::truth_at(points_, reference::ImageTracer(occluder.scene(), occluder.snapshot()),
@@ -67,7 +66,6 @@ public:
     [[nodiscard]] const std::vector<double>& truth() const { return truth_; }
 
 private:
-    const ShadowOccluder& occluder_;
     StudyCase study_;
     renderer::ShadowMesh mesh_;
     ShadowPoints points_;
