@@ -56,6 +56,7 @@ public:
                                            renderer::Traversal::mini_stack};
         const int m = least_m();
         std::vector<std::shared_ptr<renderer::Renderer>> made;
+        made.reserve(traversals.size());
         for (const auto traversal : traversals)
             made.push_back(std::make_shared<renderer::Renderer>(make(4, m, traversal)));
         for (const double place : places) {

@@ -91,7 +91,7 @@ private:
     }
 
     [[nodiscard]] voxelizer::BitGrid truth_of(const VoxelCase& voxel_case,
-                                              const std::vector<VoxelContender>& all) {
+                                              const std::vector<VoxelContender>& all) const {
         const auto row_spans = std::find_if(
             all.begin(), all.end(), [](const VoxelContender& c) { return c.name == cpu_row_span_name; });
         if (voxel_case.region.size.x <= largest_reference || !row_spans_exact_ || row_spans == all.end())
@@ -151,6 +151,7 @@ private:
 
     void add_pyramid(const std::string& scene, const VoxelCase& voxel_case) {
         std::vector<double> samples;
+        samples.reserve(std::size_t(std::max(options_.runs, 0)));
         (void)contenders_.pyramid_ms(voxel_case);
         for (int run = 0; run < options_.runs; ++run)
             samples.push_back(contenders_.pyramid_ms(voxel_case));

@@ -36,6 +36,8 @@ public:
     ~VoxelContenders();
     VoxelContenders(const VoxelContenders&) = delete;
     VoxelContenders& operator=(const VoxelContenders&) = delete;
+    VoxelContenders(VoxelContenders&&) = delete;
+    VoxelContenders& operator=(VoxelContenders&&) = delete;
 
     /// All contenders of a case: every method of the voxelizer, plain rasterization, and the peers on the
     /// CPU. The case must outlive them.
