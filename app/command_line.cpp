@@ -21,6 +21,9 @@ std::string footer() {
     for (const renderer::BuiltinVolume& builtin : renderer::builtin_volumes()) {
         text += fmt::format("  builtin:{:<14}{}\n", builtin.name, builtin.description);
     }
+    for (const renderer::BuiltinSet& builtin : renderer::builtin_sets()) {
+        text += fmt::format("  builtin:{:<14}{}\n", builtin.name, builtin.description);
+    }
     text +=
         "\nExit codes: 0 done, 1 a comparison found a difference, 2 wrong usage, 3 bad input file,\n"
         "4 no usable OpenGL 4.5 context, 5 out of memory, 130 interrupted.\n"

@@ -4,6 +4,7 @@
 #include "app/terminal/terminal.h"
 
 int main(int argc, char** argv) {
+    cairn::app::secure_standard_streams();
     try {
         return int(cairn::app::read_command_line({argv + std::min(argc, 1), argv + argc})());
     } catch (...) {

@@ -27,6 +27,11 @@ constexpr std::array shells = {
     BuiltinVolume{"ball", "a volume: a ball, likewise", 0.0, 0.45},
 };
 
+constexpr std::array sets = {
+    BuiltinSet{"fractal", "a set without a finest detail: a cube without one of its octants, and so on"},
+    BuiltinSet{"sponge", "Menger's sponge, as fine as a tree can be"},
+};
+
 const BuiltinVolume* find_builtin_volume(std::string_view name) {
     if (!name.starts_with(builtin_prefix)) return nullptr;
     const auto* const found = std::find_if(shells.begin(), shells.end(), [&](const BuiltinVolume& shell) {
@@ -124,6 +129,10 @@ TreeOptions usual_tree(std::string_view path_or_builtin) {
 
 std::span<const BuiltinVolume> builtin_volumes() {
     return shells;
+}
+
+std::span<const BuiltinSet> builtin_sets() {
+    return sets;
 }
 
 std::vector<ControlPoint> default_transfer() {

@@ -67,6 +67,14 @@ struct BuiltinVolume {
 /// The built-in volumes, which need no file.
 [[nodiscard]] std::span<const BuiltinVolume> builtin_volumes();
 
+struct BuiltinSet {
+    std::string_view name;
+    std::string_view description;
+};
+/// The built-in sets, of which no surface is known, but whether a voxel belongs to them: ContentKind::fractal
+/// and ContentKind::sponge.
+[[nodiscard]] std::span<const BuiltinSet> builtin_sets();
+
 /// The transfer function that an empty ContentOptions::transfer stands for: from a tenth of the density range
 /// on, denser places are more opaque.
 [[nodiscard]] std::vector<ControlPoint> default_transfer();

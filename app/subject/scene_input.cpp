@@ -33,9 +33,18 @@ int animation_called(const scenes::Scene& scene, const std::string& name) {
 }  // namespace
 
 SceneInput load_input(const SceneOptions& options, bool quiet) {
-    if (renderer::content_kind(options.scene) == renderer::ContentKind::volume)
-        throw Error(Fault::usage, options.scene, "this verb needs surfaces, and that is a volume",
-                    "\"cairn render\", \"cairn view\" and \"cairn info\" take volumes");
+    switch (renderer::content_kind(options.scene)) {
+        case renderer::ContentKind::surface:
+            break;
+        case renderer::ContentKind::volume:
+            throw Error(Fault::usage, options.scene, "this verb needs surfaces, and that is a volume",
+                        "\"cairn render\", \"cairn view\" and \"cairn info\" take volumes");
+        case renderer::ContentKind::fractal:
+        case renderer::ContentKind::sponge:
+            throw Error(Fault::usage, options.scene,
+                        "this verb needs surfaces, and that is a set by its formula",
+                        "\"cairn render\" and \"cairn info\" take it");
+    }
     const Progress progress("loading", quiet);
     SceneInput input{scenes::load(options.scene, {.trust_paths = options.trust_paths}), {}, {}};
     scenes::When& when = input.when;

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "app/terminal/terminal.h"
 #include "base/clock.h"
 
 namespace cairn::app {
@@ -41,16 +41,14 @@ void Progress::draw_until_done() {
         const double share = share_.load();
         const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
         if (share < 0.0) {
-            fmt::print(stderr, "\r{}: {:.0f} s\033[K", what_, seconds);
+            tell(fmt::format("\r{}: {:.0f} s\033[K", what_, seconds));
         } else {
             const int filled = int(std::clamp(share, 0.0, 1.0) * bar_width);
-            fmt::print(stderr, "\r{} [{:=<{}}{: <{}}] {:.0f}%\033[K", what_, "", filled, "",
-                       bar_width - filled, share * 100.0);
+            tell(fmt::format("\r{} [{:=<{}}{: <{}}] {:.0f}%\033[K", what_, "", filled, "", bar_width - filled,
+                             share * 100.0));
         }
-        std::fflush(stderr);
     } while (!wake_.wait_for(lock, redraw_every, [this] { return done_; }));
-    fmt::print(stderr, "\r\033[K");
-    std::fflush(stderr);
+    tell("\r\033[K");
 }
 
 }  // namespace cairn::app

@@ -1,12 +1,15 @@
 #include "app/terminal/terminal.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <new>
 #include <stdexcept>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "app/terminal/option_names.h"
 #include "base/error.h"
@@ -21,13 +24,28 @@ std::string printable(std::string_view text) {
     return out;
 }
 
+void secure_standard_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
+        // It takes the least free number, which is this one, because those before it are open. In the mode
+        // that the stream is not used in, so that its use fails as that of a closed one.
+        (void)open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    }
+}
+
+void tell(std::string_view text) {
+    (void)std::fwrite(text.data(), 1, text.size(), stderr);
+    (void)std::fflush(stderr);
+}
+
 void warn(std::string_view what) {
-    fmt::print(stderr, "warning: {}\n", printable(what));
+    tell(fmt::format("warning: {}\n", printable(what)));
 }
 
 void print_error(std::string_view what, std::string_view way_out) {
-    fmt::print(stderr, "error: {}\n", printable(what));
-    if (!way_out.empty()) fmt::print(stderr, "  {}\n", printable(way_out));
+    std::string text = fmt::format("error: {}\n", printable(what));
+    if (!way_out.empty()) text += fmt::format("  {}\n", printable(way_out));
+    tell(text);
 }
 
 ExitCode report_current_exception() {

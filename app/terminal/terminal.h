@@ -12,6 +12,14 @@ namespace cairn::app {
 /// drive the user's terminal.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// Opens /dev/null in place of each of stdin, stdout and stderr that is closed: else the next file that is
+/// opened would take its number, and what is meant for the terminal would be written into that file. Call it
+/// before anything else.
+void secure_standard_streams();
+
+/// Writes to stderr. Whether that can be written makes no difference: what the command has done counts.
+void tell(std::string_view text);
+
 /// Prints "warning: WHAT" on stderr.
 void warn(std::string_view what);
 

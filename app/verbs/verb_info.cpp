@@ -64,6 +64,7 @@ Json list_scenes(const scenes::Scene& scene) {
     return list;
 }
 
+/// A volume, or a set by its formula.
 ExitCode run_volume(const CommonOptions& options) {
     Report report(options.report);
     report.add("scene", options.scene.scene);
@@ -88,7 +89,7 @@ ExitCode run_volume(const CommonOptions& options) {
 }
 
 ExitCode run(const CommonOptions& options) {
-    if (renderer::content_kind(options.scene.scene) == renderer::ContentKind::volume)
+    if (renderer::content_kind(options.scene.scene) != renderer::ContentKind::surface)
         return run_volume(options);
     const SceneInput input = load_input(options.scene, options.report.quiet);
     const scenes::Scene& scene = input.scene;

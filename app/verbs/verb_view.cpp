@@ -20,6 +20,7 @@
 #include "app/terminal/png.h"
 #include "app/terminal/progress.h"
 #include "app/terminal/report.h"
+#include "app/terminal/terminal.h"
 #include "app/verbs/verbs.h"
 #include "app/viewer/canvas.h"
 #include "app/viewer/input.h"
@@ -66,7 +67,7 @@ void add_options(CLI::App& verb, Options& options) {
 
 std::filesystem::path free_picture_name() {
     for (int i = 1;; ++i) {
-        const std::filesystem::path path = fmt::format("cairn-{}.png", i);
+        std::filesystem::path path = fmt::format("cairn-{}.png", i);
         if (!std::filesystem::exists(path)) return path;
     }
 }
@@ -166,7 +167,7 @@ private:
         pictures_.push_back({{"file", path.string()}, {"command", command}});
         notice_ = "wrote " + path.string();
         if (!options_.report.quiet && options_.report.json != "-") {
-            fmt::print("{}\n", command);
+            (void)std::puts(command.c_str());
             (void)std::fflush(stdout);
         }
         log("picture " + path.string());
@@ -182,7 +183,7 @@ private:
     }
 
     void log(const std::string& text) const {
-        if (options_.log) fmt::print(stderr, "{}\n", text);
+        if (options_.log) tell(text + "\n");
     }
 
     const Options& options_;

@@ -42,8 +42,19 @@ TEST(AppUsage, HelpNamesEveryVerbAndBuiltinScene) {
     const Answer answer = cairn({"--help"});
     EXPECT_EQ(answer.code, 0) << answer;
     EXPECT_EQ(answer.err, "");
-    for (const char* word : {"info", "voxelize", "check", "render", "export", "builtin:knot", "Exit codes"}) {
+    for (const char* word : {"info", "voxelize", "check", "render", "export", "builtin:knot", "builtin:ball",
+                             "builtin:fractal", "builtin:sponge", "Exit codes"}) {
         expect_contains(answer.out, word);
+    }
+}
+
+TEST(AppUsage, SetsByTheirFormulaAreKnownToEveryVerb) {
+    for (const char* set : {"builtin:fractal", "builtin:sponge"}) {
+        const nlohmann::json figures = cairn_json({"info", set});
+        EXPECT_TRUE(figures["bounds_low"].is_array()) << figures;
+        expect_contains(cairn({"voxelize", set, "-r", "16"}).err, "this verb needs surfaces");
+        EXPECT_EQ(cairn({"voxelize", set, "-r", "16"}).code, 2);
+        EXPECT_EQ(cairn({"shadow", set, "--method", "voxel"}).code, 2);
     }
 }
 

@@ -48,7 +48,8 @@ Answer cairn(const std::vector<std::string>& arguments, const Surroundings& surr
     line += fmt::format(" {}", quoted(CAIRN_COMMAND));
     for (const std::string& argument : arguments)
         line += fmt::format(" {}", quoted(argument));
-    line += fmt::format(" >{} 2>{} </dev/null", quoted(scratch.file("out")), quoted(scratch.file("err")));
+    line += fmt::format(" >{} 2>{} </dev/null {}", quoted(scratch.file("out")), quoted(scratch.file("err")),
+                        surroundings.redirections);
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(scratch.file("out")),
             read_text(scratch.file("err"))};

@@ -24,6 +24,7 @@ std::ostream& operator<<(std::ostream& out, const Answer& answer);
 struct Surroundings {
     std::filesystem::path folder = {};                    ///< working folder; empty: that of the test
     std::map<std::string, std::string> environment = {};  ///< variables added to those of the test
+    std::string redirections = {};  ///< of the shell, as "2>&-": instead of those of the test
 };
 
 /// Runs `cairn ARGUMENTS...` to its end. OpenGL errors end it (CAIRN_GL_DEBUG).
