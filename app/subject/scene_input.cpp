@@ -40,10 +40,13 @@ SceneInput load_input(const SceneOptions& options, bool quiet) {
             throw Error(Fault::usage, options.scene, "this verb needs surfaces, and that is a volume",
                         "\"cairn render\", \"cairn view\" and \"cairn info\" take volumes");
         case renderer::ContentKind::fractal:
-        case renderer::ContentKind::sponge:
             throw Error(Fault::usage, options.scene,
                         "this verb needs surfaces, and that is a set by its formula",
                         "\"cairn render\" and \"cairn info\" take it");
+        case renderer::ContentKind::sponge:
+            throw Error(Fault::usage, options.scene,
+                        "this verb needs surfaces, and that is a set by its formula",
+                        "\"cairn render\", \"cairn view\" and \"cairn info\" take it");
     }
     const Progress progress("loading", quiet);
     SceneInput input{scenes::load(options.scene, {.trust_paths = options.trust_paths}), {}, {}};

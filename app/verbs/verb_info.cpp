@@ -64,8 +64,7 @@ Json list_scenes(const scenes::Scene& scene) {
     return list;
 }
 
-/// A volume, or a set by its formula.
-ExitCode run_volume(const CommonOptions& options) {
+ExitCode run_volume_or_set(const CommonOptions& options) {
     Report report(options.report);
     report.add("scene", options.scene.scene);
     scenes::Bounds bounds;
@@ -90,7 +89,7 @@ ExitCode run_volume(const CommonOptions& options) {
 
 ExitCode run(const CommonOptions& options) {
     if (renderer::content_kind(options.scene.scene) != renderer::ContentKind::surface)
-        return run_volume(options);
+        return run_volume_or_set(options);
     const SceneInput input = load_input(options.scene, options.report.quiet);
     const scenes::Scene& scene = input.scene;
     const scenes::Snapshot& snapshot = input.snapshot;

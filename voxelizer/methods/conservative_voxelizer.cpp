@@ -28,11 +28,11 @@ unsigned thread_rows(const Region& region) {
 
 ConservativeVoxelizer::ConservativeVoxelizer(const gl::ShaderSource& shaders, const BatchLimits& limits)
     : Voxelizer(shaders),
-      limits_(limits),
+      limits_(limits.usable()),
       mark_small_(gl::build_compute(shaders, "voxelize/mark_small.comp.glsl", {{"EXACT", "0"}})),
       mark_doubtful_(gl::build_compute(shaders, "voxelize/mark_small.comp.glsl", {{"EXACT", "1"}})),
       mark_large_(gl::build_compute(shaders, "voxelize/mark_large.comp.glsl")),
-      queue_(VOXEL_QUEUE_COUNT * (1 + std::size_t(std::max(limits.triangles, 1U))) * sizeof(std::uint32_t),
+      queue_(VOXEL_QUEUE_COUNT * (1 + std::size_t(limits_.triangles)) * sizeof(std::uint32_t),
              "voxel queues") {}
 
 void ConservativeVoxelizer::mark_doubtful(const Region& region, unsigned count) {
@@ -94,7 +94,7 @@ ConservativeVoxelizer::QueueCounts ConservativeVoxelizer::mark_small(const Regio
 
 std::vector<MaskCandidate> ConservativeVoxelizer::mark_chunk(const Region& region, const ChunkPart& part) {
     std::vector<MaskCandidate> undecided;
-    const std::size_t batch = std::max(limits_.triangles, 1U);
+    const std::size_t batch = limits_.triangles;
     for (std::size_t first = 0; first < part.count; first += batch) {
         const QueueCounts counts = mark_small(region, part, first, std::min(part.count - first, batch));
         if (counts[VOXEL_QUEUE_DOUBT] > 0) mark_doubtful(region, counts[VOXEL_QUEUE_DOUBT]);

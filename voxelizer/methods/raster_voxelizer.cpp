@@ -16,19 +16,14 @@
 namespace cairn::voxelizer {
 namespace {
 
-/// Triangles that are listed in one pass.
-std::size_t batch_triangles(const BatchLimits& limits) {
-    return std::max(limits.triangles, 1U);
-}
-
 /// Vertex numbers per list of shaders/voxelize/raster_lists.glsl.
 std::size_t list_words(const BatchLimits& limits) {
-    return 3 * batch_triangles(limits);
+    return 3 * std::size_t(limits.triangles);
 }
 
 /// All lists: of each the length, the vertices and the triangles.
 std::size_t list_bytes(const BatchLimits& limits) {
-    return RASTER_KINDS * (1 + list_words(limits) + batch_triangles(limits)) * sizeof(std::uint32_t);
+    return RASTER_KINDS * (1 + list_words(limits) + limits.triangles) * sizeof(std::uint32_t);
 }
 
 int corners_of(unsigned kind) {
@@ -97,7 +92,7 @@ RasterVoxelizer::RasterVoxelizer(Method method, const gl::ShaderSource& shaders,
                                  const BatchLimits& limits)
     : Voxelizer(shaders),
       method_(method),
-      limits_(limits),
+      limits_(limits.usable()),
       vertex_path_(takes_vertex_path(path)),
       list_(gl::build_compute(shaders, "voxelize/list_primitives.comp.glsl")),
       unite_along_x_(gl::build_compute(shaders, "voxelize/unite_slices.comp.glsl", {{"ALONG_X", "1"}})),
@@ -110,7 +105,7 @@ RasterVoxelizer::RasterVoxelizer(Method method, const gl::ShaderSource& shaders,
                      : gl::build_raster(shaders, "voxelize/feed.vert.glsl", "voxelize/slice.frag.glsl",
                                         "voxelize/project.geom.glsl", macros);
       }),
-      lists_(list_bytes(limits), "primitives to rasterize") {
+      lists_(list_bytes(limits_), "primitives to rasterize") {
     GLuint vertex_array = 0;
     glCreateVertexArrays(1, &vertex_array);
     vertex_array_ = gl::VertexArrayHandle(vertex_array);
@@ -169,7 +164,7 @@ void RasterVoxelizer::draw_chunk(const gl::Buffer& positions, const RasterTile& 
                                  bool masked) {
     if (!vertex_path_)
         glVertexArrayVertexBuffer(vertex_array_.id(), 0, positions.id(), 0, 3 * sizeof(std::int32_t));
-    const std::size_t batch = batch_triangles(limits_);
+    const std::size_t batch = limits_.triangles;
     for (std::size_t first = 0; first < part.count; first += batch) {
         if (part.subset) part.subset->bind_storage(SSBO_VOXEL_SUBSET);
         const std::size_t count = std::min(part.count - first, batch);

@@ -50,13 +50,13 @@ void set(const gl::Program& program, const char* name, unsigned x, unsigned y) {
 }  // namespace
 
 AttributeVoxelizer::AttributeVoxelizer(const gl::ShaderSource& shaders, const BatchLimits& limits)
-    : limits_(limits),
+    : limits_(limits.usable()),
       list_small_(gl::build_compute(shaders, "voxelize/list_pairs.comp.glsl", {{"LARGE", "0"}})),
       list_large_(gl::build_compute(shaders, "voxelize/list_pairs.comp.glsl", {{"LARGE", "1"}})),
       gather_(gl::build_compute(shaders, "voxelize/gather_attributes.comp.glsl", {{"HAS_MASK", "0"}})),
       gather_masked_(gl::build_compute(shaders, "voxelize/gather_attributes.comp.glsl", {{"HAS_MASK", "1"}})),
-      // All in the first queue, which the layout of the others leaves a batch of room.
-      queue_(VOXEL_QUEUE_COUNT * (1 + std::size_t(std::max(limits.triangles, 1U))) * sizeof(std::uint32_t),
+      // Of the queues only the first: its place depends on no other's room.
+      queue_((VOXEL_QUEUE_COUNT + std::size_t(limits_.triangles)) * sizeof(std::uint32_t),
              "attribute queue") {}
 
 void AttributeVoxelizer::ChunkBinding::bind() const {
@@ -126,8 +126,7 @@ void AttributeVoxelizer::prepare(const Region& region, const BitGrid& bits) {
 }
 
 AttributeVoxelizer::Part AttributeVoxelizer::part_from(std::uint32_t first, const BitGrid& bits) const {
-    Part part{
-        first, std::min<std::uint32_t>(slice_ranks_.back(), first + std::max(limits_.part_voxels, 1U)), {}};
+    Part part{first, std::min<std::uint32_t>(slice_ranks_.back(), first + limits_.part_voxels), {}};
     const auto slice_of = [&](std::uint32_t rank) {
         return int(std::upper_bound(slice_ranks_.begin(), slice_ranks_.end(), rank) - slice_ranks_.begin()) -
                1;
@@ -148,7 +147,7 @@ void AttributeVoxelizer::gather_chunk(const ChunkBinding& chunk, const Region& r
     // has room.
     std::vector<Work> waiting;
     for (std::size_t end = count; end > 0;) {
-        const std::size_t batch = std::min<std::size_t>(end, std::max(limits_.triangles, 1U));
+        const std::size_t batch = std::min<std::size_t>(end, limits_.triangles);
         end -= batch;
         waiting.push_back({unsigned(end), unsigned(batch), 0, 0});
     }

@@ -1,5 +1,6 @@
 #include "voxelizer/methods/voxelizer.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -54,6 +55,14 @@ void check_region(const Region& region) {
 }
 
 }  // namespace
+
+BatchLimits BatchLimits::usable() const {
+    BatchLimits out = *this;
+    for (std::uint32_t* const limit :
+         {&out.triangles, &out.candidates, &out.pairs, &out.part_voxels, &out.threads})
+        *limit = std::max(*limit, 1U);
+    return out;
+}
 
 Method method_named(std::string_view name) {
     std::string known;

@@ -47,6 +47,9 @@ struct BatchLimits {
     std::uint32_t threads = 1U << 24U;      ///< threads that share queued triangles; at least one triangle's
     /// Render targets of a raster method; at least those of a tile of 32^3 voxels.
     std::size_t target_bytes = std::size_t(256) << 20U;
+
+    /// These, with at least 1 of each.
+    [[nodiscard]] BatchLimits usable() const;
 };
 
 /// Marks the voxels of a surface on the GPU, by one of the methods. Needs the current context of its
