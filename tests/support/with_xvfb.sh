@@ -21,7 +21,9 @@ trap clean_up EXIT
 exec 9<"$0"
 flock 9
 mkfifo "$scratch/display"
-Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3>"$scratch/display" 2>"$scratch/log" 9<&- &
+# Without -noreset the server starts anew when its last client leaves, and refuses a client that comes meanwhile: that of a
+# command's next window.
+Xvfb -noreset -displayfd 3 -screen 0 800x600x24 -nolisten tcp 3>"$scratch/display" 2>"$scratch/log" 9<&- &
 server=$!
 if ! read -r -t 30 number <"$scratch/display"; then
   echo "Xvfb did not start:" >&2
