@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+// NOLINTBEGIN(bugprone-reserved-identifier): the sanitizers give these functions their names.
 extern "C" {
 
 /// Freed memory that is kept back to find uses of it: less than the usual 256 MiB, which would count as the
@@ -26,3 +27,4 @@ const char* __lsan_default_options() {
     return "print_suppressions=0";
 }
 }
+// NOLINTEND(bugprone-reserved-identifier)

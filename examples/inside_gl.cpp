@@ -57,7 +57,7 @@ public:
         glEnable(GL_CULL_FACE);
     }
 
-    void set_picture(const cairn::optics::Image& image) {
+    void set_picture(const cairn::optics::Image& image) const {
         glTextureSubImage2D(texture_, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
     }
 

@@ -113,8 +113,10 @@ int visible_in_strata(const ImageTracer& tracer, const glm::dvec3& point, const 
         waiting = 0;
     };
     for (int stratum = 0; stratum < across * across; ++stratum) {
-        const double x = (stratum % across + random.unit()) / across;
-        const double y = (stratum / across + random.unit()) / across;
+        const int column = stratum % across;
+        const int row = stratum / across;
+        const double x = (column + random.unit()) / across;
+        const double y = (row + random.unit()) / across;
         const glm::dvec3 sample = sample_of(light, point, x, y);
         if (normal != glm::dvec3(0.0) && glm::dot(sample - point, normal) <= 0.0) continue;
         samples[waiting++] = sample;

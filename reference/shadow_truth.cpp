@@ -48,7 +48,8 @@ public:
     }
     [[nodiscard]] glm::dvec3 direction(std::size_t pixel) const {
         const auto width = std::size_t(size_.x);
-        const glm::dvec2 place = (glm::dvec2(double(pixel % width), double(pixel / width)) + 0.5) / size_;
+        const std::size_t row = pixel / width;
+        const glm::dvec2 place = (glm::dvec2(double(pixel % width), double(row)) + 0.5) / size_;
         return glm::normalize(forward_ + (2.0 * place.x - 1.0) * right_ + (1.0 - 2.0 * place.y) * up_);
     }
 

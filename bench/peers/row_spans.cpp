@@ -48,7 +48,7 @@ int floor_of(double bound) {
 }
 
 bool near_whole(double bound, double error) {
-    return std::abs(bound - double(int(bound + 0.5))) <= error;
+    return std::abs(bound - double(floor_of(bound + 0.5))) <= error;
 }
 
 /// The closed voxels that touch [lowest, highest]: ceil(lowest) - 1 to floor(highest).

@@ -59,7 +59,7 @@ std::string setting_of(const Row& row) {
     if (varied == "taps") return whole("kernel") + "²";
     if (varied == "format") return row.text("format");
     for (const char* name : {"rays", "samples", "map_size"})
-        if (const std::string value = whole(name); !value.empty()) return value;
+        if (std::string value = whole(name); !value.empty()) return value;
     return {};
 }
 

@@ -131,6 +131,7 @@ int block_count(const interop::MarchView& view) {
 
 std::vector<interop::BlockStart> all_block_starts(const interop::MarchView& view) {
     std::vector<interop::BlockStart> starts;
+    starts.reserve(std::size_t(block_count(view)));
     for (int block = 0; block < block_count(view); ++block)
         starts.push_back({interop::uint(block), 0.0F, 1e30F});
     return starts;

@@ -31,6 +31,12 @@ std::uint8_t byte_of(double share) {
     return std::uint8_t(std::lround(std::clamp(share, 0.0, 1.0) * 255.0));
 }
 
+/// The number of a cell in a cube of cells, x fastest.
+std::size_t place_in(const glm::ivec3& cell, int side) {
+    const auto n = std::size_t(side);
+    return std::size_t(cell.x) + n * (std::size_t(cell.y) + n * std::size_t(cell.z));
+}
+
 }  // namespace
 
 CpuBrick::CpuBrick(const TreeShape& shape, Channels channels) : shape_(shape), channels_(channels) {
@@ -45,7 +51,7 @@ void CpuBrick::set(const glm::ivec3& place, double coverage, const glm::vec3& no
                    const glm::vec3& color) {
     const int side = shape_.mip_side(0);
     const glm::ivec3 texel = place + 1;
-    const auto index = std::size_t(texel.x + side * (texel.y + side * texel.z));
+    const auto index = place_in(texel, side);
     const std::uint8_t covered = byte_of(coverage);
     const std::size_t alpha = channels_.color ? 4 * index + 3 : index;
     const bool was_occupied = texels_[alpha] != 0;
@@ -65,7 +71,7 @@ void CpuBrick::set(const glm::ivec3& place, double coverage, const glm::vec3& no
     const int across = shape_.m / block_side;
     const glm::ivec3 block = place / block_side;
     const glm::ivec3 in = place % block_side;
-    const auto number = std::size_t(block.x + across * (block.y + across * block.z));
+    const auto number = place_in(block, across);
     const std::size_t summaries = (std::size_t(shape_.blocks()) + 63) / 64;
     const std::uint64_t voxel = std::uint64_t(1) << unsigned(in.x + block_side * (in.y + block_side * in.z));
     std::uint64_t& word = masks_[summaries + number];

@@ -25,6 +25,10 @@ public:
     ///                if a size is out of range; Fault::memory if the scene does not fit.
     explicit MapShadows(const ShadowScene& scene, const SoftShadowOptions& options = {},
                         const gl::ShaderSource& shaders = {});
+    MapShadows(const MapShadows&) = delete;
+    MapShadows& operator=(const MapShadows&) = delete;
+    MapShadows(MapShadows&&) = delete;
+    MapShadows& operator=(MapShadows&&) = delete;
     ~MapShadows() override;
 
     /// @throws Error  as ShadowRenderer does; Fault::usage if the light is not a rectangle, if the view has

@@ -22,6 +22,10 @@ public:
     ///                caster or no receiver; Fault::memory if the scene does not fit.
     explicit PyramidShadows(const ShadowScene& scene, const PyramidShadowOptions& options = {},
                             const gl::ShaderSource& shaders = {});
+    PyramidShadows(const PyramidShadows&) = delete;
+    PyramidShadows& operator=(const PyramidShadows&) = delete;
+    PyramidShadows(PyramidShadows&&) = delete;
+    PyramidShadows& operator=(PyramidShadows&&) = delete;
     ~PyramidShadows() override;
 
     [[nodiscard]] ShadowPicture render(const View& view, const ShadowRequest& request = {}) override;
