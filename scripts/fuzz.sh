@@ -24,10 +24,11 @@ failed=()
 for target in "${targets[@]}"; do
   echo "== fuzz: $target, $seconds s"
   mkdir -p "build/fuzz/corpus/$target" build/fuzz/found
-  # A file of some KB may ask for no more than this much memory and time.
+  # A file of some KB may ask for no more than this much memory and time. Whole paths, because a fuzzer may go to a folder
+  # of its own.
   if ! "build/fuzz/fuzz/${target}_fuzz" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -max_len=16384 \
-    -print_final_stats=1 -artifact_prefix="build/fuzz/found/$target-" "build/fuzz/corpus/$target" "fuzz/corpus/$target" \
-    2> "build/fuzz/$target.log"; then
+    -print_final_stats=1 -artifact_prefix="$PWD/build/fuzz/found/$target-" "$PWD/build/fuzz/corpus/$target" \
+    "$PWD/fuzz/corpus/$target" 2> "build/fuzz/$target.log"; then
     failed+=("$target")
     tail -n 60 "build/fuzz/$target.log"
   fi
