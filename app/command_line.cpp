@@ -1,12 +1,17 @@
 #include "app/command_line.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <system_error>
 
 #include <cairn/version.h>
 #include <fmt/format.h>
 
+#include "app/options/options.h"
 #include "base/error.h"
+#include "base/output_file.h"
 #include "renderer/open_content.h"
 #include "scenes/load.h"
 
@@ -57,6 +62,26 @@ Error usage_error(const CLI::App& command, const CLI::ParseError& error) {
     return {Fault::usage, "", what, fmt::format("\"{} --help\" lists the options", asked)};
 }
 
+/// @throws Error (Fault::usage) if two outputs of a verb are one file, of which the first would be lost.
+void check_outputs_differ(const CLI::App& command) {
+    std::map<std::filesystem::path, std::string> outputs;
+    for (const CLI::App* verb : command.get_subcommands()) {
+        for (const CLI::Option* option : verb->get_options()) {
+            if (option->get_type_name() != output_file || option->empty()) continue;
+            const std::string name = option->get_name();
+            const std::filesystem::path path(option->results().front());
+            if (path == "-" || is_device(path)) continue;
+            std::error_code ignored;
+            const auto [other, is_new] = outputs.try_emplace(
+                std::filesystem::weakly_canonical(file_behind_links(path), ignored), name);
+            if (!is_new)
+                throw Error(Fault::usage, path.string(),
+                            fmt::format("{} and {} would both write it", other->second, name),
+                            "name two files");
+        }
+    }
+}
+
 void add_verbs(CLI::App& command, Work& chosen) {
     add_info(command, chosen);
     add_voxelize(command, chosen);
@@ -92,6 +117,7 @@ Work read_command_line(const std::vector<std::string>& arguments) {
         throw usage_error(*command, error);
     }
     if (!chosen) check_verb(*command, nullptr);
+    check_outputs_differ(*command);
     return chosen;
 }
 

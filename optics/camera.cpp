@@ -2,8 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <glm/trigonometric.hpp>
+
+#include "base/error.h"
 
 namespace cairn::optics {
+
+void check_camera(const Camera& camera) {
+    const auto fail = [](const std::string& what, const std::string& way_out) {
+        throw Error(Fault::usage, "view", what, way_out);
+    };
+    if (!(camera.yfov > 0.0 && camera.yfov < 3.14159)) {
+        fail(fmt::format("a field of view of {} degrees", glm::degrees(camera.yfov)),
+             "choose more than 0 and less than 180 degrees; 45 suit most scenes");
+    }
+    for (const glm::dvec3& place : {camera.eye, camera.target}) {
+        const glm::dvec3 reach = glm::abs(place);
+        if (!std::isfinite(glm::length(place)))
+            fail("the camera's eye or its target is not finite", "use finite coordinates");
+        if (std::max({reach.x, reach.y, reach.z}) > farthest_place)
+            fail(fmt::format("the camera's eye or its target is at {}, {}, {}", place.x, place.y, place.z),
+                 fmt::format("use coordinates up to {}", farthest_place));
+    }
+    const glm::dvec3 forward = camera.target - camera.eye;
+    const double length = glm::length(forward);
+    if (length == 0.0) fail("the camera looks at where it stands", "move its target away from its eye");
+    const double side = glm::length(glm::cross(forward / length, camera.up));
+    if (!std::isfinite(side) || side < 1e-9)
+        fail("the camera's up direction is the one it looks along", "choose another up direction");
+}
 
 Camera framing_camera(const scenes::Bounds& bounds, double aspect) {
     Camera camera;

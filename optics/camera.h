@@ -15,6 +15,14 @@ struct Camera {
     bool operator==(const Camera&) const = default;
 };
 
+/// The largest coordinate of a camera or a light. Beyond it, floats of rays and of their squares overflow.
+inline constexpr double farthest_place = 1e15;
+
+/// @throws Error  Fault::usage if the camera shows nothing: its field of view is out of range, a coordinate
+/// is
+///                not finite or past `farthest_place`, it looks at where it stands or along its up direction.
+void check_camera(const Camera& camera);
+
 /// A camera that sees the whole of the bounds, from the front, above and the right.
 /// @param aspect  width of the picture over its height.
 [[nodiscard]] Camera framing_camera(const scenes::Bounds& bounds, double aspect);

@@ -1,8 +1,13 @@
 #include "optics/light.h"
 
 #include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <glm/trigonometric.hpp>
 
 #include "base/error.h"
+#include "optics/camera.h"
 
 namespace cairn::optics {
 namespace {
@@ -13,6 +18,30 @@ void check_rectangle(const Light& light) {
 }
 
 }  // namespace
+
+void check_light(const Light& light) {
+    const auto fail = [](const std::string& what, const std::string& way_out) {
+        throw Error(Fault::usage, "view", what, way_out);
+    };
+    if (!(light.radius >= 0.0 && light.radius <= farthest_place))
+        fail(fmt::format("a light with a radius of {}", light.radius), "choose 0, a point, or more");
+    if (!(light.angle >= 0.0 && light.angle < 1.5707)) {
+        fail(fmt::format("a light with an angle of {} degrees", glm::degrees(light.angle)),
+             "choose at least 0 and less than 90 degrees; the sun's is 0.27");
+    }
+    const auto is_near = [](const glm::dvec3& place) {
+        const glm::dvec3 reach = glm::abs(place);  // comparisons are false for what is not a number
+        return reach.x <= farthest_place && reach.y <= farthest_place && reach.z <= farthest_place;
+    };
+    if (!is_near(light.half_u) || !is_near(light.half_v))
+        fail("the light's half axes are not finite, or endless", "use finite ones");
+    const glm::dvec3 place = light.positional ? light.position : light.towards;
+    if (!std::isfinite(glm::length(place)) || (!light.positional && glm::length(place) == 0.0))
+        fail("the light has no direction", "give it a finite one that is not zero");
+    if (light.positional && !is_near(place))
+        fail(fmt::format("the light is at {}, {}, {}", place.x, place.y, place.z),
+             fmt::format("use coordinates up to {}, or a direction", farthest_place));
+}
 
 Light aimed_light(const glm::dvec3& position, const glm::dvec3& target, double width, double height,
                   const glm::dvec3& up) {

@@ -45,6 +45,10 @@ struct Light {
     return glm::normalize(light.positional ? light.position - point : light.towards);
 }
 
+/// @throws Error  Fault::usage if the light shines from nowhere: a radius or an angle is out of range, a
+///                coordinate is not finite or past `farthest_place`, or it has no direction.
+void check_light(const Light& light);
+
 /// A rectangle at `position` that faces `target`: cross(half_u, half_v) points there. Two edges are level if
 /// `up` is vertical. All other fields are as in Light.
 ///

@@ -113,6 +113,7 @@ LightHash hash_of(const LightQuestion& question) {
         if (item.primitive->topology != scenes::Topology::triangles) continue;
         hasher.add_vector(item.world_from_mesh);
         hasher.add_list(item.positions);
+        hasher.add_list(item.placed);
         hasher.add_list(std::span(item.primitive->indices));
         add_mask(hasher, question.scene, *item.primitive);
     }

@@ -7,7 +7,7 @@
 #include "base/clock.h"
 #include "reference/light_cache.h"
 #include "reference/traced_scene.h"
-#include "scenes/transform.h"
+#include "scenes/snapshot.h"
 
 namespace cairn::reference {
 namespace {
@@ -22,9 +22,7 @@ Faces faces_of(const scenes::Snapshot& snapshot) {
     for (const scenes::Item& item : snapshot.items) {
         if (item.primitive->topology != scenes::Topology::triangles) continue;
         const auto& indices = item.primitive->indices;
-        const auto corner = [&](std::size_t i) {
-            return scenes::transform_point(item.world_from_mesh, item.positions[indices[i]]);
-        };
+        const auto corner = [&](std::size_t i) { return item.world(indices[i]); };
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
             const glm::dvec3 a = corner(i);
             const glm::dvec3 across = glm::cross(corner(i + 1) - a, corner(i + 2) - a);

@@ -4,16 +4,23 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "optics/camera.h"
+#include "optics/light.h"
 #include "optics/srgb.h"
 
 namespace cairn::reference {
 namespace {
 
-/// The texel of an image that a coordinate falls on, by glTF's wrap modes.
+/// The texel of an image that a coordinate falls on, by glTF's wrap modes. A coordinate that is not finite
+/// counts as 0.
 int wrapped(double coordinate, int size, scenes::Wrap wrap) {
+    if (!std::isfinite(coordinate)) return 0;
     if (wrap == scenes::Wrap::clamp_to_edge)
         return int(std::clamp(std::floor(coordinate * size), 0.0, size - 1.0));
     double unit = coordinate - std::floor(coordinate);
@@ -42,6 +49,10 @@ void drop_holes(const RTCFilterFunctionNArguments* arguments) {
                                   glm::vec3(1.0F - u - v, u, v)};
         if (look->alpha_at(point) < look->material->alpha_cutoff) arguments->valid[i] = 0;
     }
+}
+
+std::string shown(const glm::dvec3& place) {
+    return fmt::format("({}, {}, {})", place.x, place.y, place.z);
 }
 
 }  // namespace
@@ -97,9 +108,7 @@ glm::dvec3 PrimitiveLook::normal_at(const TrianglePoint& point) const {
         if (glm::length(n) > 1e-12) return glm::normalize(n);
     }
     const std::uint32_t* const corner = &item->primitive->indices[std::size_t(point.triangle) * 3];
-    const auto world = [&](int i) {
-        return glm::dvec3(item->world_from_mesh * glm::dvec4(item->positions[corner[i]], 1.0));
-    };
+    const auto world = [&](int i) { return item->world(corner[i]); };
     const glm::dvec3 n = glm::cross(world(1) - world(0), world(2) - world(0));
     return glm::length(n) > 0.0 ? glm::normalize(n) : glm::dvec3(0.0, 1.0, 0.0);
 }
@@ -112,6 +121,12 @@ TracedScene::TracedScene(const scenes::Scene& scene, const scenes::Snapshot& sna
     if (!snapshot.bounds.empty()) {
         centre = 0.5 * (snapshot.bounds.low + snapshot.bounds.high);
         size = glm::length(snapshot.bounds.high - snapshot.bounds.low);
+        if (!(size + glm::length(centre) <= optics::farthest_place))
+            throw Error(Fault::input, "reference",
+                        fmt::format("the scene reaches from {} to {}", shown(snapshot.bounds.low),
+                                    shown(snapshot.bounds.high)),
+                        fmt::format("rays reach {}: scale the scene down, or move it to the origin",
+                                    optics::farthest_place));
     }
     looks.reserve(snapshot.items.size());
     std::size_t triangles = 0;
@@ -134,15 +149,15 @@ void TracedScene::add(const scenes::Item& item, const PrimitiveLook& look) {
     const EmbreeGeometry geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     auto* const vertices = static_cast<float*>(
         rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), item.positions.size()));
+                                3 * sizeof(float), item.vertex_count()));
     auto* const indices = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 3 * sizeof(std::uint32_t), primitive.element_count()));
     if (vertices == nullptr || indices == nullptr) {
         throw Error(Fault::memory, "reference", "Embree cannot hold the triangles", "choose a smaller scene");
     }
-    for (std::size_t i = 0; i < item.positions.size(); ++i) {
-        const glm::dvec3 world(item.world_from_mesh * glm::dvec4(item.positions[i], 1.0));
+    for (std::size_t i = 0; i < item.vertex_count(); ++i) {
+        const glm::dvec3 world = item.world(i);
         for (int axis = 0; axis < 3; ++axis)
             vertices[3 * i + std::size_t(axis)] = float(world[axis] - centre[axis]);
     }
@@ -179,6 +194,8 @@ PictureRays::PictureRays(const optics::Camera& camera, const optics::Light& ligh
       eye_(camera.eye - scene.centre),
       centre_(scene.centre),
       gap_(float(1e-5 * scene.size)) {
+    optics::check_camera(camera);
+    optics::check_light(light);
     forward_ = glm::normalize(camera.target - camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward_, camera.up));
     const double half_height = std::tan(0.5 * camera.yfov);

@@ -40,8 +40,10 @@ const BuiltinVolume* find_builtin_volume(std::string_view name) {
     return found == shells.end() ? nullptr : found;
 }
 
-std::shared_ptr<const Field> load_field(const std::string& name, const TreeOptions& tree, int copies,
-                                        std::vector<std::string>& warnings) {
+std::shared_ptr<const Field> load_field(const std::string& name, const TreeOptions& tree,
+                                        const ContentOptions& options,
+                                        std::vector<scenes::Warning>& warnings) {
+    const int copies = options.copies;
     if (copies < 1)
         throw Error(Fault::usage, "volume", fmt::format("{} copies", copies), "choose at least 1");
     std::shared_ptr<const Field> field;
@@ -49,9 +51,9 @@ std::shared_ptr<const Field> load_field(const std::string& name, const TreeOptio
         const int resolution = std::max(tree.max_resolution / copies, 1);
         field = std::make_shared<HollowSphere>(tree.n, resolution, shell->inner, shell->outer);
     } else {
-        const scenes::Volume volume = scenes::load_volume(name);
+        const scenes::Volume volume = scenes::load_volume(name, options.load);
         warnings = volume.warnings;
-        field = std::make_shared<DenseField>(volume, tree.n);
+        field = std::make_shared<DenseField>(volume, tree.n, options.load.memory_bytes);
     }
     if (copies > 1) field = std::make_shared<RepeatedField>(field, copies);
     return field;
@@ -147,13 +149,13 @@ ContentSource::ContentSource(const std::string& path_or_builtin, const ContentOp
     check_set(kind_, tree_);
     switch (kind_) {
         case ContentKind::surface: {
-            scenes::Scene scene = scenes::load(path_or_builtin, {.trust_paths = options.trust_paths});
+            scenes::Scene scene = scenes::load(path_or_builtin, options.load);
             scenes::Snapshot snapshot = scenes::take_snapshot(scene, options.when);
             *this = ContentSource(std::move(scene), std::move(snapshot), tree_);
             break;
         }
         case ContentKind::volume:
-            field_ = load_field(path_or_builtin, tree_, options.copies, warnings_);
+            field_ = load_field(path_or_builtin, tree_, options, warnings_);
             bounds_ = bounds_of(field_->frame());
             break;
         case ContentKind::fractal:

@@ -84,8 +84,8 @@ struct ContentOptions {
     std::optional<TreeOptions> tree = std::nullopt;
     /// The moment at which a scene is shown.
     scenes::When when = {};
-    /// A scene may read files outside its own folder.
-    bool trust_paths = false;
+    /// How a file is read.
+    scenes::LoadOptions load = {};
     /// Copies of a volume along each axis, side by side: at least 1.
     int copies = 1;
     /// Transfer function of a volume. Extinctions are per voxel of the volume, so that one function suits
@@ -114,7 +114,7 @@ public:
     /// Voxels of a volume along each axis; none for other kinds.
     [[nodiscard]] std::optional<glm::i64vec3> voxels() const;
     /// Which parts of the file were ignored, and why.
-    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    [[nodiscard]] const std::vector<scenes::Warning>& warnings() const { return warnings_; }
 
     /// Needs a context. The source is not needed afterwards.
     /// @throws Error as surface_content() and volume_content() do.
@@ -128,7 +128,7 @@ private:
     ContentKind kind_ = ContentKind::surface;
     TreeOptions tree_;
     scenes::Bounds bounds_;
-    std::vector<std::string> warnings_;
+    std::vector<scenes::Warning> warnings_;
     std::shared_ptr<const SceneAtMoment> scene_;
     std::shared_ptr<const Field> field_;
     std::vector<ControlPoint> transfer_;

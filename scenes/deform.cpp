@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scenes/transform.h"
+#include "scenes/snapshot.h"
 
 namespace cairn::scenes {
 namespace {
@@ -52,19 +52,21 @@ DeformedVertices morph(const Primitive& primitive, std::span<const float> weight
     return result;
 }
 
-void skin(const Primitive& primitive, std::span<const glm::dmat4> world_from_mesh,
-          DeformedVertices& vertices) {
-    if (world_from_mesh.empty()) return;
+std::vector<glm::dvec3> skin(const Primitive& primitive, std::span<const glm::dmat4> world_from_mesh,
+                             DeformedVertices& vertices) {
+    std::vector<glm::dvec3> world;
+    world.reserve(vertices.positions.size());
     for (std::size_t i = 0; i < vertices.positions.size(); ++i) {
         glm::dmat4 matrix(0.0);
         bool any = !primitive.skin.empty() && blend(matrix, primitive.skin[i], world_from_mesh);
         for (const auto& set : primitive.more_skin)
             any = blend(matrix, set[i], world_from_mesh) || any;
         if (!any) matrix = world_from_mesh[0];
-        vertices.positions[i] = glm::vec3(transform_point(matrix, vertices.positions[i]));
+        world.push_back(transform_point(matrix, vertices.positions[i]));
         if (!vertices.normals.empty())
             vertices.normals[i] = unit(normal_matrix(glm::dmat3(matrix)) * glm::dvec3(vertices.normals[i]));
     }
+    return world;
 }
 
 }  // namespace cairn::scenes

@@ -15,16 +15,20 @@ struct DeformedVertices {
 };
 
 // The order of all operations here is part of the contract, because shaders/voxelize/deform.comp.glsl follows
-// it to the same bits: float for morph targets, double for skins, rounded to float once at the end of each.
+// it to the same bits: float for morph targets, which move vertices in the space of their mesh; double for
+// skins, which place them in the world, where floats would be coarser than voxels.
 
 /// Adds the morph targets' displacements, each times its weight, target by target. Weights that are not
 /// finite count as 0.
 [[nodiscard]] DeformedVertices morph(const Primitive& primitive, std::span<const float> weights);
 
-/// Moves vertices by the weighted sum of their joints' matrices (glTF 2.0, 3.7.3.3); results are in world
-/// space. A vertex whose weights are all 0 follows the skin's first joint.
-/// @param world_from_mesh  one matrix per joint: world_from_joint * joint_from_mesh.
-void skin(const Primitive& primitive, std::span<const glm::dmat4> world_from_mesh,
-          DeformedVertices& vertices);
+/// Places vertices by the weighted sum of their joints' matrices (glTF 2.0, 3.7.3.3). A vertex whose weights
+/// are all 0 follows the skin's first joint.
+/// @param world_from_mesh  one matrix per joint, at least one: world_from_joint * joint_from_mesh.
+/// @param vertices         in the mesh's space; their normals are turned to the world.
+/// @return                 positions in the world, one per vertex.
+[[nodiscard]] std::vector<glm::dvec3> skin(const Primitive& primitive,
+                                           std::span<const glm::dmat4> world_from_mesh,
+                                           DeformedVertices& vertices);
 
 }  // namespace cairn::scenes

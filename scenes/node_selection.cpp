@@ -72,7 +72,7 @@ Snapshot part_of(const Snapshot& whole, const NodeSelection& selection) {
         part.items.push_back(item);
         const Primitive& primitive = *item.primitive;
         for (const std::uint32_t vertex : primitive.indices)
-            part.bounds.add(glm::dvec3(item.world_from_mesh * glm::dvec4(item.positions[vertex], 1.0)));
+            part.bounds.add(item.world(vertex));
         switch (primitive.topology) {
             case Topology::triangles:
                 part.triangle_count += primitive.element_count();

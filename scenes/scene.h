@@ -60,8 +60,8 @@ struct MorphTarget {
 
 struct SkinWeights {
     glm::u16vec4 joints{0};  ///< indices into Skin::joints
-    /// The sum of the weights over all sets of a vertex (Primitive::more_skin) is 1, normalized when loaded;
-    /// or all weights are 0.
+    /// The sum of the weights over all sets of a vertex (Primitive::more_skin) is exactly 1: they are
+    /// multiples of 2^-24, normalized when loaded. Or all weights are 0.
     glm::vec4 weights{0.0F};
 };
 
@@ -90,7 +90,8 @@ struct Primitive {
 struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
-    /// Default weights, one per morph target of its primitives.
+    /// Default weights, one per morph target of its primitives. A primitive may have fewer targets, which
+    /// are then the first ones.
     std::vector<float> morph_weights;
 };
 
@@ -114,6 +115,7 @@ struct Node {
     /// is.
     std::vector<Trs> instances;
     std::vector<float> morph_weights;  ///< replace the mesh's if not empty
+    bool visible = true;               ///< KHR_node_visibility; if not, nor are its descendants
 };
 
 struct Skin {
@@ -131,7 +133,7 @@ struct Channel {
     Path path = Path::translation;
     Interpolation interpolation = Interpolation::linear;
     int width = 3;
-    std::vector<float> times;  ///< seconds, strictly increasing
+    std::vector<float> times;  ///< seconds, never decreasing; of equal ones the last counts from there on
     std::vector<float> values;
 };
 
@@ -163,6 +165,28 @@ struct Light {
     float outer_cone = 0.785398F;  ///< radians from the axis; spot only
 };
 
+/// The memory that one file may take, if nobody says otherwise, and the places of its primitives.
+inline constexpr std::uint64_t usual_memory_bytes = 8ULL << 30;
+inline constexpr std::uint64_t usual_primitives = 4'000'000;
+
+/// What the primitives of a scene may take where its nodes place them (take_snapshot()): few bytes of a file
+/// can ask for billions of triangles.
+struct PlacingLimits {
+    /// Posed copies of vertices, placed triangles, and the tables of alpha masks, each.
+    std::uint64_t bytes = usual_memory_bytes;
+    std::uint64_t primitives = usual_primitives;
+};
+
+/// A statement of a file that a reader did not follow as it stands.
+struct Warning {
+    std::string text;
+    /// What is voxelized or shown differs from what the file means: a picture is lost, for one. Programs
+    /// should not hide such a warning.
+    bool alters = false;
+
+    friend bool operator==(const Warning&, const Warning&) = default;
+};
+
 struct SceneRoots {
     std::string name;
     std::vector<int> nodes;
@@ -173,6 +197,7 @@ struct Scene {
     std::vector<Image> images;
     std::vector<Texture> textures;
     std::vector<Material> materials;
+    /// A mesh that is damaged and that no node uses is here without primitives.
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;  ///< a forest: no node is its own ancestor
     std::vector<Skin> skins;
@@ -182,7 +207,8 @@ struct Scene {
     std::vector<SceneRoots> scenes;  ///< at least one
     int default_scene = 0;
     /// Warnings about optional extensions that are not supported, and the like; each text once.
-    std::vector<std::string> warnings;
+    std::vector<Warning> warnings;
+    PlacingLimits placing;
 };
 
 }  // namespace cairn::scenes

@@ -8,14 +8,14 @@
 
 #include "base/error.h"
 #include "scenes/deform.h"
+#include "scenes/memory_budget.h"
 #include "scenes/pose.h"
-#include "scenes/transform.h"
 
 namespace cairn::scenes {
 namespace {
 
-/// More than this many placed primitives are a damaged file's doing: few bytes can ask for billions.
-constexpr std::size_t most_items = 4'000'000;
+/// About what a triangle takes in the surface that is built of it.
+constexpr std::uint64_t bytes_per_placed_triangle = 64;
 
 /// Data that is computed once per primitive, however often it is placed.
 struct Extent {
@@ -74,39 +74,58 @@ public:
     }
 
 private:
-    /// Depth first, each node before its children.
+    /// The visible nodes, depth first, each before its children.
     [[nodiscard]] std::vector<std::size_t> nodes_in_order(const SceneRoots& roots) const {
         std::vector<std::size_t> order;
         std::vector<int> open(roots.nodes.rbegin(), roots.nodes.rend());
         while (!open.empty()) {
-            order.push_back(static_cast<std::size_t>(open.back()));
+            const auto index = static_cast<std::size_t>(open.back());
             open.pop_back();
-            const auto& children = scene_.nodes[order.back()].children;
+            if (!scene_.nodes[index].visible) continue;
+            order.push_back(index);
+            const auto& children = scene_.nodes[index].children;
             open.insert(open.end(), children.rbegin(), children.rend());
         }
         return order;
     }
 
-    /// At most how many items these nodes give.
+    /// Counts what these nodes place before any of it is made.
+    /// @return        how many items that gives at most
+    /// @throws Error  if the scene's limits do not allow it.
     [[nodiscard]] std::size_t count_items(const std::vector<std::size_t>& nodes) const {
-        std::size_t count = 0;
+        std::uint64_t items = 0;
+        std::uint64_t triangles = 0;
+        MemoryBudget posed(scene_.placing.bytes);
         for (const std::size_t index : nodes) {
             const Node& node = scene_.nodes[index];
             if (node.mesh < 0) continue;
-            count += scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives.size() *
-                     std::max<std::size_t>(node.instances.size(), 1);
-            if (count > most_items)
-                throw Error(Fault::input, scene_.name,
-                            fmt::format("it places more than {} primitives", most_items), "split the scene");
+            const std::uint64_t places = std::max<std::size_t>(node.instances.size(), 1);
+            for (const Primitive& primitive : scene_.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                items += places;
+                triangles += places * primitive.element_count();
+                const std::uint64_t each = node.skin >= 0                    ? sizeof(glm::dvec3)
+                                           : primitive.morph_targets.empty() ? 0
+                                                                             : sizeof(glm::vec3);
+                posed.charge(scene_.name, "the posed copies of its meshes",
+                             primitive.positions.size() + primitive.normals.size(), each);
+            }
         }
-        return count;
+        if (items > scene_.placing.primitives)
+            throw Error(
+                Fault::input, scene_.name,
+                fmt::format("it places {} primitives, which passes the limit \"primitives\"", items),
+                fmt::format("if the file is genuine, allow it by LoadOptions::limits primitives={}", items));
+        MemoryBudget(scene_.placing.bytes)
+            .charge(scene_.name, fmt::format("the {} triangles that it places", triangles), triangles,
+                    bytes_per_placed_triangle);
+        return items;
     }
 
     void place_mesh(std::size_t index) {
         const Node& node = scene_.nodes[index];
         const Mesh& mesh = scene_.meshes[static_cast<std::size_t>(node.mesh)];
         const std::span<const float> weights = morph_weights_of(scene_, pose_, index);
-        const std::vector<glm::dmat4> joints = joint_matrices(node);
+        const std::vector<glm::dmat4>& joints = joint_matrices(node);
         for (const Primitive& primitive : mesh.primitives) {
             const bool skinned = !joints.empty() && !primitive.skin.empty();
             Item item{&primitive,
@@ -133,10 +152,14 @@ private:
         }
     }
 
-    [[nodiscard]] std::vector<glm::dmat4> joint_matrices(const Node& node) const {
-        if (node.skin < 0) return {};
+    /// Empty if the node has no skin. Computed once per skin, however many nodes share it.
+    [[nodiscard]] const std::vector<glm::dmat4>& joint_matrices(const Node& node) {
+        static const std::vector<glm::dmat4> none;
+        if (node.skin < 0) return none;
+        const auto [found, is_new] = matrices_of_skins_.try_emplace(node.skin);
+        std::vector<glm::dmat4>& matrices = found->second;
+        if (!is_new) return matrices;
         const Skin& skin = scene_.skins[static_cast<std::size_t>(node.skin)];
-        std::vector<glm::dmat4> matrices;
         matrices.reserve(skin.joints.size());
         for (std::size_t j = 0; j < skin.joints.size(); ++j)
             matrices.push_back(world_by_joint(skin, pose_, j));
@@ -146,11 +169,14 @@ private:
     void deform(Item& item, std::span<const float> weights, const std::vector<glm::dmat4>* joints) {
         DeformedVertices vertices = morph(*item.primitive, weights);
         if (joints != nullptr) {
-            skin(*item.primitive, *joints, vertices);
+            result_.placed.push_back(skin(*item.primitive, *joints, vertices));
+            item.placed = result_.placed.back();
+            item.positions = {};
             item.world_from_mesh = glm::dmat4(1.0);
+        } else {
+            result_.deformed.push_back(std::move(vertices.positions));
+            item.positions = result_.deformed.back();
         }
-        result_.deformed.push_back(std::move(vertices.positions));
-        item.positions = result_.deformed.back();
         if (vertices.normals.empty()) return;
         result_.deformed.push_back(std::move(vertices.normals));
         item.normals = result_.deformed.back();
@@ -181,11 +207,10 @@ private:
 
     /// Grows the bounds vertex by vertex.
     void add_vertices(const Item& item, const std::vector<std::uint32_t>& used, std::size_t node) {
-        const std::size_t vertex_count = used.empty() ? item.positions.size() : used.size();
+        const std::size_t vertex_count = used.empty() ? item.vertex_count() : used.size();
         double finite_sum = 0.0;  // a single infinity or NaN stays in a sum for ever
         for (std::size_t i = 0; i < vertex_count; ++i) {
-            const glm::vec3& position = item.positions[used.empty() ? i : used[i]];
-            const glm::dvec3 world = transform_point(item.world_from_mesh, position);
+            const glm::dvec3 world = item.world(used.empty() ? i : used[i]);
             result_.bounds.add(world);
             finite_sum += 0.0 * (world.x + world.y + world.z);
         }
@@ -199,6 +224,7 @@ private:
     const Scene& scene_;
     const Pose& pose_;
     std::unordered_map<const Primitive*, Extent> extents_;
+    std::unordered_map<int, std::vector<glm::dmat4>> matrices_of_skins_;
     Snapshot result_;
 };
 

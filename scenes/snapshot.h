@@ -23,17 +23,33 @@ struct Bounds {
     [[nodiscard]] bool empty() const { return low.x > high.x; }
 };
 
+/// An affine matrix times a point. The order of the operations is part of the contract, because
+/// shaders/voxelize/deform.comp.glsl follows it to the same bits: (x + y) + (z + translation), nothing fused.
+[[nodiscard]] inline glm::dvec3 transform_point(const glm::dmat4& matrix, const glm::dvec3& point) {
+    return (glm::dvec3(matrix[0]) * point.x + glm::dvec3(matrix[1]) * point.y) +
+           (glm::dvec3(matrix[2]) * point.z + glm::dvec3(matrix[3]));
+}
+
 /// One mesh primitive at one place. The spans point into the Scene or, if a skin or morph targets moved the
 /// vertices, into the Snapshot.
 struct Item {
     const Primitive* primitive = nullptr;
-    std::span<const glm::vec3> positions;  ///< mesh space; one per vertex
-    std::span<const glm::vec3> normals;    ///< mesh space; empty if the file has none
-    glm::dmat4 world_from_mesh{1.0};
-    int node = -1;      ///< index into Scene::nodes
-    int instance = -1;  ///< index into the node's instances; -1: the node has none
-    /// Whether the node's skin moved `positions`, which are then in world space.
-    bool skinned = false;
+    /// Mesh space; one per vertex. Empty if a skin placed the vertices.
+    std::span<const glm::vec3> positions;
+    std::span<const glm::vec3> normals;  ///< mesh space; empty if the file has none
+    glm::dmat4 world_from_mesh{1.0};     ///< the identity if a skin placed the vertices
+    int node = -1;                       ///< index into Scene::nodes
+    int instance = -1;                   ///< index into the node's instances; -1: the node has none
+    bool skinned = false;                ///< whether the node's skin placed the vertices
+    /// World space, one per vertex, if the node's skin placed them. As doubles: far from the origin floats
+    /// are coarser than voxels.
+    std::span<const glm::dvec3> placed = {};
+
+    [[nodiscard]] std::size_t vertex_count() const { return skinned ? placed.size() : positions.size(); }
+    /// A vertex in the world.
+    [[nodiscard]] glm::dvec3 world(std::size_t vertex) const {
+        return skinned ? placed[vertex] : transform_point(world_from_mesh, positions[vertex]);
+    }
 };
 
 struct PlacedLight {
@@ -63,14 +79,18 @@ struct Snapshot {
     std::uint64_t line_count = 0;
     std::uint64_t point_count = 0;
 
-    /// Vertices that skins or morph targets moved; spans of `items` point into these.
+    /// Vertices that morph targets moved, those that skins placed, and their normals; spans of `items` point
+    /// into these.
     std::vector<std::vector<glm::vec3>> deformed;
+    std::vector<std::vector<glm::dvec3>> placed;
 };
 
 /// Evaluates animation, morph targets and skins at one moment. The scene must outlive the snapshot.
 ///
 /// @throws Error  Fault::usage if the animation or the scene index does not exist; Fault::input if a
-///                transform gives a vertex that is not finite.
+///                transform gives a vertex that is not finite, or too many primitives are placed;
+///                Fault::memory if what is placed would take more than Scene::placing allows, which is
+///                counted before anything is made.
 [[nodiscard]] Snapshot take_snapshot(const Scene& scene, const When& when = {});
 
 /// The animation that a moment names; null if it names none.

@@ -329,6 +329,10 @@ Json GlbBuilder::node_json(const Node& node) {
     if (mesh >= 0) json["mesh"] = mesh;
     if (node.camera >= 0) json["camera"] = node.camera;
     if (node.light >= 0) json["extensions"]["KHR_lights_punctual"]["light"] = node.light;
+    if (!node.visible) {
+        use_extension("KHR_node_visibility", true);
+        json["extensions"]["KHR_node_visibility"]["visible"] = false;
+    }
     if (mesh >= 0 && !node.instances.empty()) {
         json["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = instancing_json(node.instances);
     }

@@ -50,6 +50,51 @@ scenes::Bounds bounds_of(const char* option, const std::string& text) {
     return bounds;
 }
 
+/// Reads "elements=1000000,primitives=8000000".
+void set_limits(const char* option, std::string_view text, scenes::Limits& limits) {
+    while (!text.empty()) {
+        const std::size_t comma = text.find(',');
+        const std::string_view part = text.substr(0, comma);
+        text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+        const std::size_t equals = part.find('=');
+        const auto names = scenes::limit_names();
+        const auto found = std::ranges::find(names, part.substr(0, equals), &scenes::LimitName::name);
+        if (equals == std::string_view::npos || found == names.end()) {
+            std::string known;
+            for (const scenes::LimitName& limit : names)
+                known += fmt::format("{}{}", known.empty() ? "" : ", ", limit.name);
+            throw Error(Fault::usage, option, fmt::format("\"{}\" is no limit and its number", part),
+                        "write NAME=N with one of " + known);
+        }
+        limits.*found->value = parse_count(option, part.substr(equals + 1));
+    }
+}
+
+/// The names of all limits, for the help.
+std::string listed_limits() {
+    constexpr std::size_t longest_line = 58;
+    std::string text;
+    std::string line;
+    for (const scenes::LimitName& limit : scenes::limit_names()) {
+        if (line.empty() || line.size() + limit.name.size() + 2 > longest_line) {
+            text += line.empty() ? "" : line + ",";
+            line = "\n" + std::string(limit.name);
+        } else {
+            line += fmt::format(", {}", limit.name);
+        }
+    }
+    return text + line;
+}
+
+/// The limits that are not the usual ones, as set_limits() reads them.
+std::string limits_text(const scenes::Limits& limits) {
+    std::string text;
+    for (const scenes::LimitName& limit : scenes::limit_names())
+        if (limits.*limit.value != scenes::Limits{}.*limit.value)
+            text += fmt::format("{}{}={}", text.empty() ? "" : ",", limit.name, limits.*limit.value);
+    return text;
+}
+
 gl::ShaderSource shaders_in(const std::filesystem::path& folder) {
     if (!std::filesystem::is_directory(folder)) {
         throw Error(Fault::usage, "--shader-dir", fmt::format("\"{}\" is not a folder", folder.string()),
@@ -61,13 +106,17 @@ gl::ShaderSource shaders_in(const std::filesystem::path& folder) {
 }  // namespace
 
 void add_report_options(CLI::App& verb, ReportOptions& options) {
-    add_parsed_option(verb, "--json", "FILE", "write every figure as JSON too; - is stdout, without the text",
+    add_parsed_option(verb, "--json", output_file,
+                      "write every figure as JSON too; - is stdout, without the text",
                       [&options](const std::string& target) {
                           if (target != "-") check_writable(target);
                           options.json = target;
                       })
         ->group(common_group);
-    verb.add_flag("--quiet", options.quiet, "print nothing but errors")->group(common_group);
+    verb.add_flag("--quiet", options.quiet,
+                  "print nothing but errors, and warnings that what is\nvoxelized or shown is not what the "
+                  "file means")
+        ->group(common_group);
 }
 
 void add_scene_argument(CLI::App& verb, SceneOptions& options) {
@@ -76,13 +125,43 @@ void add_scene_argument(CLI::App& verb, SceneOptions& options) {
                     ".nii or .nii.gz file too")
         ->required()
         ->type_name("");
-    add_table(verb, trust_table(), options, common_group);
+    add_table(verb, load_table(), options, common_group);
 }
 
-OptionTable<SceneOptions> trust_table() {
-    return {flag_row<SceneOptions>(
-        "--trust-paths", "let the scene read files outside its own folder: only for\nfiles that you trust",
-        [](auto& options) -> auto& { return options.trust_paths; })};
+OptionTable<SceneOptions> load_table() {
+    return {
+        flag_row<SceneOptions>(
+            "--trust-paths",
+            "let the scene read files outside its own folder: only for\nfiles that you trust",
+            [](auto& options) -> auto& { return options.load.trust_paths; }),
+        flag_row<SceneOptions>(
+            "--strict",
+            "fail where a warning would say that what is voxelized or\nshown is not what the file means: a "
+            "lost "
+            "picture, say",
+            [](auto& options) -> auto& { return options.load.strict; }),
+        {"--memory", "MIB",
+         fmt::format(
+             "what the unpacked parts of a file may take together, and\nwhat is made of them as much again "
+             "(default: {}, and less\nfor small files)",
+             scenes::usual_memory_bytes >> 20U),
+         [](SceneOptions& options, const char* option, const std::string& text) {
+             constexpr int most_mib = 1 << 24;
+             options.load.memory_bytes = std::uint64_t(parse_int(option, text, 1, most_mib)) << 20U;
+         },
+         [](const SceneOptions& options) -> std::optional<std::string> {
+             if (!options.load.memory_bytes) return std::nullopt;
+             return std::to_string(*options.load.memory_bytes >> 20U);
+         }},
+        {"--limit", "NAME=N,...", "allow a file more than usual of these:" + listed_limits(),
+         [](SceneOptions& options, const char* option, const std::string& text) {
+             set_limits(option, text, options.load.limits);
+         },
+         [](const SceneOptions& options) -> std::optional<std::string> {
+             const std::string text = limits_text(options.load.limits);
+             return text.empty() ? std::nullopt : std::optional(text);
+         }},
+    };
 }
 
 OptionTable<SceneOptions> moment_table() {
@@ -197,7 +276,7 @@ bool is_device(const std::filesystem::path& path) {
 CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,
                                const std::vector<std::string>& endings, const std::string& description) {
     return add_parsed_option(
-        verb, "-o,--output", "FILE", description, [&output, known = endings](const std::string& text) {
+        verb, "-o,--output", output_file, description, [&output, known = endings](const std::string& text) {
             const std::filesystem::path path(text);
             if (!is_device(path) &&
                 std::ranges::find(known, lower_case(path.extension().string())) == known.end()) {

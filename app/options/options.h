@@ -11,6 +11,7 @@
 #include "app/options/option_table.h"
 #include "gl/context.h"
 #include "gl/shader_source.h"
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "voxelizer/grid.h"
 
@@ -29,15 +30,15 @@ void add_report_options(CLI::App& verb, ReportOptions& options);
 /// Which scene is read, and at which moment of it.
 struct SceneOptions {
     std::string scene;  ///< a path or "builtin:NAME"
-    bool trust_paths = false;
+    scenes::LoadOptions load;
     std::optional<double> seconds;
     std::optional<std::string> animation;  ///< a name or an index
     std::optional<int> scene_index;
 };
 [[nodiscard]] OptionTable<SceneOptions> moment_table();
-/// The option `--trust-paths`.
-[[nodiscard]] OptionTable<SceneOptions> trust_table();
-/// Adds the argument `SCENE` and the option `--trust-paths`.
+/// The options of how a file is read: `--trust-paths`, `--strict`, `--memory` and `--limit`.
+[[nodiscard]] OptionTable<SceneOptions> load_table();
+/// Adds the argument `SCENE` and the options of load_table().
 void add_scene_argument(CLI::App& verb, SceneOptions& options);
 void add_moment_options(CLI::App& verb, SceneOptions& options);
 
@@ -68,6 +69,9 @@ struct GridOptions {
 /// @throws Error (Fault::usage) if neither or both of `resolution` and `voxel_size` are set.
 void check_grid_options(const GridOptions& options);
 [[nodiscard]] voxelizer::Grid make_grid(const GridOptions& options, const scenes::Bounds& scene);
+
+/// The word for the value, in the help, of every option that names a file to write, and of no other.
+inline constexpr const char* output_file = "FILE";
 
 /// Adds the option `-o FILE`. FILE must end in one of `endings` (".npy").
 CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,

@@ -44,6 +44,16 @@ int parse_int(std::string_view option, std::string_view text, int low, int high)
     return int(*value);
 }
 
+std::uint64_t parse_count(std::string_view option, std::string_view text) {
+    constexpr std::uint64_t most = std::uint64_t(1) << 53U;
+    const std::optional<std::uint64_t> value = read_whole<std::uint64_t>(text);
+    if (!value || *value > most) {
+        throw Error(Fault::usage, std::string(option),
+                    fmt::format("\"{}\" is not a whole number from 0 to 2^53", text));
+    }
+    return *value;
+}
+
 double parse_number(std::string_view option, std::string_view text) {
     const std::optional<double> value = read_whole<double>(text);
     if (!value) throw Error(Fault::usage, std::string(option), fmt::format("\"{}\" is not a number", text));

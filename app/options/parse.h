@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,6 +16,8 @@ namespace cairn::app {
 
 /// @param low, high  the range, both ends included.
 [[nodiscard]] int parse_int(std::string_view option, std::string_view text, int low, int high);
+/// A whole number up to 2^53.
+[[nodiscard]] std::uint64_t parse_count(std::string_view option, std::string_view text);
 [[nodiscard]] double parse_number(std::string_view option, std::string_view text);
 
 /// Numbers separated by commas, "1,2.5,-3": at least `least` and at most `most` of them.

@@ -150,6 +150,8 @@ OptionTable<ShadowOptions> map_table() {
     };
 }
 
+}  // namespace
+
 OptionTable<ShadowOptions> truth_table() {
     return {
         whole_row<ShadowOptions>(
@@ -164,8 +166,6 @@ OptionTable<ShadowOptions> truth_table() {
             [](auto& options) -> auto& { return options.truth_cache; }),
     };
 }
-
-}  // namespace
 
 Names<ShadowMethod> shadow_method_names() {
     return {{"voxel", ShadowMethod::voxel},
@@ -187,7 +187,7 @@ void add_shadow_options(CLI::App& verb, ShadowOptions& options) {
     verb.add_option_function<std::string>(
             "--difference", [&](const std::string& text) { options.difference = text; },
             "a picture of the difference: red where the shadow is too\ndark, blue where it is too light")
-        ->type_name("OUT.png");
+        ->type_name(output_file);
     add_table(verb, camera_table(), options.view);
     add_table(verb, light_table(), options);
     verb.add_option(

@@ -43,6 +43,8 @@ struct ShadowOptions {
 
 /// The options of `cairn shadow` alone, without files and lists of nodes.
 [[nodiscard]] OptionTable<ShadowOptions> shadow_option_table();
+/// Those of them that only Embree's rays know.
+[[nodiscard]] OptionTable<ShadowOptions> truth_table();
 /// Adds all options of `cairn shadow`.
 void add_shadow_options(CLI::App& verb, ShadowOptions& options);
 

@@ -298,7 +298,7 @@ std::string render_command(const SceneOptions& scene, const ViewOptions& options
     shown.cones = view.shadow.kind == renderer::ShadowQuality::Kind::cones;
     shown.camera_given = true;
     std::string line = "cairn render " + shell_word(scene.scene);
-    line += command_line(trust_table(), scene) + command_line(moment_table(), scene);
+    line += command_line(load_table(), scene) + command_line(moment_table(), scene);
     line += command_line(view_table(), shown) + command_line(frame_table(), shown) +
             command_line(zoom_table(), shown);
     return line + " --output=" + shell_word(output.string());

@@ -49,7 +49,7 @@ SceneInput load_input(const SceneOptions& options, bool quiet) {
                         "\"cairn render\", \"cairn view\" and \"cairn info\" take it");
     }
     const Progress progress("loading", quiet);
-    SceneInput input{scenes::load(options.scene, {.trust_paths = options.trust_paths}), {}, {}};
+    SceneInput input{scenes::load(options.scene, options.load), {}, {}};
     scenes::When& when = input.when;
     when.seconds = options.seconds.value_or(0.0);
     when.scene_index = options.scene_index;
@@ -58,13 +58,16 @@ SceneInput load_input(const SceneOptions& options, bool quiet) {
     } else if (options.seconds && !input.scene.animations.empty()) {
         when.animation = 0;
     }
-    if (!quiet) {
-        for (const std::string& warning : input.scene.warnings)
-            warn(warning);
-        if (options.seconds && !when.animation) warn("--time changes nothing: the scene has no animation");
-    }
+    warn_of(input.scene.warnings, quiet);
+    if (!quiet && options.seconds && !when.animation)
+        warn("--time changes nothing: the scene has no animation");
     input.snapshot = scenes::take_snapshot(input.scene, when);
     return input;
+}
+
+void warn_of(std::span<const scenes::Warning> warnings, bool quiet) {
+    for (const scenes::Warning& warning : warnings)
+        if (!quiet || warning.alters) warn(warning.text);
 }
 
 void add_ground(SceneInput& input) {

@@ -65,10 +65,7 @@ renderer::ContentSource source_of(const SceneOptions& scene, const ViewOptions& 
     }
     const Progress progress("loading", quiet);
     renderer::ContentSource source(scene.scene, content);
-    if (!quiet) {
-        for (const std::string& warning : source.warnings())
-            warn(warning);
-    }
+    warn_of(source.warnings(), quiet);
     return source;
 }
 
@@ -97,7 +94,7 @@ renderer::ContentOptions content_options(const SceneOptions& scene, const ViewOp
     check_kind(renderer::content_kind(scene.scene), scene, options);
     renderer::ContentOptions content{
         .tree = tree_of(scene, options),
-        .trust_paths = scene.trust_paths,
+        .load = scene.load,
         .copies = options.copies,
         .transfer = options.transfer.value_or(parse_transfer(default_transfer)).points};
     renderer::VolumeOptions& volume = content.volume;
@@ -113,6 +110,32 @@ void Subject::add_figures(Report& report) const {
     if (const scenes::Snapshot* const snapshot = source_.snapshot())
         report.add("triangles", snapshot->triangle_count);
     if (const auto voxels = source_.voxels()) report.add("voxels", json_of(*voxels));
+}
+
+std::optional<int> Subject::finest_resolution() const {
+    if (kind() == ContentKind::volume || kind() == ContentKind::fractal) return std::nullopt;
+    return renderer::tree_shape_of(tree()).resolution();
+}
+
+std::vector<std::string> Subject::unmet(const ViewOptions& options, const renderer::View& view) const {
+    using Kind = renderer::ShadowQuality::Kind;
+    std::vector<std::string> texts;
+    if (options.cones && view.shadow.kind == Kind::none)
+        texts.emplace_back("--cones changes nothing: there are no shadows; --shadow soft adds them");
+    const bool wants_soft =
+        (view.shadow.kind == Kind::rays && view.shadow.samples > 1) || view.shadow.kind == Kind::cones;
+    if (wants_soft && !optics::has_extent(view.light))
+        texts.push_back(
+            fmt::format("{}: the light has no extent, so its shadows are hard; --light X,Y,Z,RADIUS "
+                        "gives it one",
+                        view.shadow.kind == Kind::cones ? "--cones" : "--shadow soft"));
+    const std::optional<int> finest = finest_resolution();
+    if (options.max_resolution && finest && *finest != *options.max_resolution)
+        texts.push_back(
+            fmt::format("--max-resolution {}: rays ask for at most {} voxels across, {} per brick and "
+                        "{} times as many per level",
+                        *options.max_resolution, *finest, tree().m, tree().n));
+    return texts;
 }
 
 renderer::View Subject::view(const ViewOptions& options) const {

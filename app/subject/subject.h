@@ -1,6 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "app/options/view_options.h"
 #include "app/terminal/report.h"
@@ -16,7 +19,7 @@ namespace cairn::app {
 /// What a verb shows: a scene at a moment, a volume, or one of the built-in sets.
 class Subject {
 public:
-    /// Loads the content. Prints warnings on stderr unless `quiet`.
+    /// Loads the content. Prints its warnings (warn_of()).
     /// @throws Error as load_input() and renderer::ContentSource do; Fault::usage if an option does not apply
     /// to the kind of content.
     Subject(const SceneOptions& scene, const ViewOptions& options, bool quiet);
@@ -29,6 +32,12 @@ public:
     /// The view that the options ask for; @see view_of(). Camera and light of the fractal are relative to its
     /// middle, in units of its side / 2^zoom.
     [[nodiscard]] renderer::View view(const ViewOptions& options) const;
+    /// What of the options has no effect on the view, or another than asked for: one text for each.
+    [[nodiscard]] std::vector<std::string> unmet(const ViewOptions& options,
+                                                 const renderer::View& view) const;
+    /// The most voxels across a surface, or the sponge, that rays may ask for; none for volumes and the
+    /// fractal.
+    [[nodiscard]] std::optional<int> finest_resolution() const;
     /// The content for a renderer. Needs a current context.
     [[nodiscard]] std::unique_ptr<renderer::Content> content(const gl::ShaderSource& shaders) const {
         return source_.content(shaders);

@@ -7,8 +7,10 @@ namespace cairn::app {
 namespace {
 
 /// Names in the error texts of the libraries, each with the option that sets it or the verb that does it.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 6> option_names = {
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> option_names = {
     {{"ContextOptions::kind", "--context"},
+     {"LoadOptions::limits", "--limit"},
+     {"LoadOptions::memory_bytes", "--memory"},
      {"LoadOptions::trust_paths", "--trust-paths"},
      {"Method::conservative", "--method conservative"},
      {"PoolSizes::brick_bytes", "--brick-pool"},

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -64,6 +65,11 @@ ExitCode report_current_exception() {
         print_error(error.what());
         return ExitCode::usage;
     } catch (const std::exception& error) {
+        const auto* const system = dynamic_cast<const std::system_error*>(&error);
+        if (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) {
+            print_error("no further thread can be started", "allow more threads, or more memory");
+            return ExitCode::memory;
+        }
         print_error(fmt::format("a fault of cairn itself: {}", error.what()),
                     "please report it, with the command line and the scene");
         return ExitCode::internal;

@@ -11,6 +11,17 @@ namespace {
     throw Error(Fault::usage, option, what, way_out);
 }
 
+/// @throws Error (Fault::usage) if an option of the table is not as it would be if it were not given.
+template <typename Options>
+void refuse_given(const OptionTable<Options>& table, const Options& options, const char* why) {
+    const Options usual{};
+    for (const OptionRow<Options>& row : table)
+        if (row.print(options) != row.print(usual))
+            refuse(row.long_name().c_str(), "it changes nothing", why);
+}
+
+void refuse_voxel_options(const ShadowOptions& options);
+
 void check_shadow_options(const ShadowOptions& options) {
     if (!options.method)
         refuse("--method", "it is missing", "choose voxel, pyramid, soft-shadow-map or embree");
@@ -38,6 +49,28 @@ void check_shadow_options(const ShadowOptions& options) {
         refuse("--method", "soft shadow maps have no self-shadowing", "name --occluders or --receivers");
     if (options.difference && !options.compare)
         refuse("--difference", "nothing is compared", "add --compare embree");
+    if (*options.method != ShadowMethod::embree && !options.compare)
+        refuse_given(truth_table(), options,
+                     "they are of Embree's rays: choose --method embree or --compare embree");
+    refuse_voxel_options(options);
+}
+
+/// @throws Error (Fault::usage) if options of the tree are given to a method that has none.
+void refuse_voxel_options(const ShadowOptions& options) {
+    if (*options.method == ShadowMethod::voxel) return;
+    ViewOptions given = options.view;
+    // The pyramid has as many voxels across.
+    if (*options.method == ShadowMethod::pyramid) given.max_resolution.reset();
+    refuse_given(tree_table(), given, "they are of --method voxel");
+}
+
+/// A light without an extent throws hard shadows, by one ray to its middle.
+void check_extent(const ShadowOptions& options, const optics::Light& light) {
+    if (optics::has_extent(light)) return;
+    constexpr const char* way_out =
+        "give --light a radius, --light-size or --light-disk, or --light-direction an angle";
+    if (options.rays && *options.rays > 1) refuse("--rays", "the light has no extent", way_out);
+    if (options.cones) refuse("--cones", "the light has no extent", way_out);
 }
 
 optics::Light light_of(const ShadowOptions& options, const optics::Light& given,
@@ -87,6 +120,7 @@ ShadowTask make_shadow_task(const ShadowOptions& options) {
     task.shown = scenes::part_of(task.input.snapshot, both);
     task.view = view_of(options.view, task.input.snapshot);
     task.view.light = light_of(options, task.view.light, task.shown.bounds);
+    check_extent(options, task.view.light);
     const bool extended = optics::has_extent(task.view.light);
     task.view.shadow.samples = options.rays.value_or(extended ? default_soft_rays : 1);
     task.view.shadow.kind =

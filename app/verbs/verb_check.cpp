@@ -56,7 +56,7 @@ private:
         }
     }
     void compare(const voxelizer::VoxelTile& tile) {
-        if (Interrupt::asked()) throw Error(Fault::interrupted, "", "interrupted");
+        Interrupt::check();
         progress_->set(double(next_) / (double(counts_.x) * counts_.y * counts_.z));
         const reference::Comparison comparison =
             reference::compare(tile.bits, truth_.in({grid_.level(), tile.origin, tile.bits.size}));
@@ -96,7 +96,6 @@ double compare_all(Voxelization& voxelization, TileComparison& comparison) {
 ExitCode run(const VoxelizationOptions& options) {
     Report report(options.common.report);
     GriddedInput scene = load_gridded(options);
-    const Interrupt interrupt;
     Voxelization voxelization(options, std::move(scene), {.surface = true});
     Stopwatch watch;
     TileComparison comparison(voxelization.surface(), voxelization.grid(), options.common.report.quiet);

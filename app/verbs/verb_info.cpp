@@ -64,13 +64,20 @@ Json list_scenes(const scenes::Scene& scene) {
     return list;
 }
 
+Json texts_of(const std::vector<scenes::Warning>& warnings) {
+    Json texts = Json::array();
+    for (const scenes::Warning& warning : warnings)
+        texts.push_back(warning.text);
+    return texts;
+}
+
 ExitCode run_volume_or_set(const CommonOptions& options) {
     Report report(options.report);
     report.add("scene", options.scene.scene);
     scenes::Bounds bounds;
-    std::vector<std::string> warnings;
+    std::vector<scenes::Warning> warnings;
     if (scenes::is_volume_file(options.scene.scene)) {
-        const scenes::Volume volume = scenes::load_volume(options.scene.scene);
+        const scenes::Volume volume = scenes::load_volume(options.scene.scene, options.scene.load);
         report.add("samples", json_of(volume.size));
         report.add("spacing", json_of(volume.spacing));
         report.add("least_value", volume.low);
@@ -82,7 +89,8 @@ ExitCode run_volume_or_set(const CommonOptions& options) {
     }
     report.add("bounds_low", json_of(bounds.low));
     report.add("bounds_high", json_of(bounds.high));
-    report.add("warnings", warnings);
+    warn_of(warnings, options.report.quiet);
+    report.add("warnings", texts_of(warnings));
     report.finish();
     return ExitCode::done;
 }
@@ -114,7 +122,7 @@ ExitCode run(const CommonOptions& options) {
     const bool empty = snapshot.bounds.empty();
     report.add("bounds_low", empty ? Json() : json_of(snapshot.bounds.low));
     report.add("bounds_high", empty ? Json() : json_of(snapshot.bounds.high));
-    report.add("warnings", scene.warnings);
+    report.add("warnings", texts_of(scene.warnings));
     report.finish();
     return ExitCode::done;
 }

@@ -16,6 +16,7 @@
 #include "app/terminal/png.h"
 #include "app/terminal/progress.h"
 #include "app/terminal/report.h"
+#include "app/terminal/terminal.h"
 #include "app/verbs/verbs.h"
 #include "renderer/mesh/mesh_raster.h"
 #include "renderer/mesh/mix.h"
@@ -82,6 +83,8 @@ Repeated repeat(renderer::Renderer& renderer, const renderer::View& view, const 
 void add_settings(const Subject& subject, const ViewOptions& options, Report& report) {
     report.add("tree_n", subject.tree().n);
     report.add("brick_m", subject.tree().m);
+    if (const std::optional<int> finest = subject.finest_resolution())
+        report.add("finest_resolution", *finest);
     report.add("traversal", name_of(options.march.traversal, traversal_names()));
     report.add("tile_query_method", name_of(options.march.tile_queries, tile_query_names()));
     if (options.frame_budget_ms) report.add("frame_budget_ms", *options.frame_budget_ms);
@@ -114,7 +117,7 @@ std::shared_ptr<renderer::MeshRaster> load_mesh(const std::string& scene, const 
     if (scene != input.scene) {
         input = SceneOptions{};
         input.scene = scene;
-        input.trust_paths = options.common.scene.trust_paths;
+        input.load = options.common.scene.load;
     }
     const SceneInput loaded = load_input(input, options.common.report.quiet);
     return renderer::make_mesh_raster(loaded.scene, loaded.snapshot, options.common.driver.shaders);
@@ -143,6 +146,10 @@ ExitCode run(const Options& options) {
     report.add("load_ms", watch.lap_ms());
     subject->add_figures(report);
     const renderer::View view = subject->view(options.view);
+    if (!quiet) {
+        for (const std::string& text : subject->unmet(options.view, view))
+            warn(text);
+    }
 
     const Driver driver(options.common.driver);
     report.add("context_ms", watch.lap_ms());

@@ -16,6 +16,7 @@
 #include "app/options/view_options.h"
 #include "app/subject/subject.h"
 #include "app/terminal/driver.h"
+#include "app/terminal/interrupt.h"
 #include "app/terminal/measure.h"
 #include "app/terminal/png.h"
 #include "app/terminal/progress.h"
@@ -102,6 +103,7 @@ public:
 
     void run() {
         while (!window_.should_close() && !has_shown_enough()) {
+            Interrupt::check();
             const double rest = viewer_.rest(glfwGetTime());
             if (rest <= 0.0 || input_.take_stir()) {
                 Stopwatch watch;
@@ -209,6 +211,10 @@ ExitCode run(const Options& options) {
     }
     auto subject = std::make_unique<Subject>(options.scene, options.view, quiet);
     const renderer::View view = subject->view(options.view);
+    if (!quiet) {
+        for (const std::string& text : subject->unmet(options.view, view))
+            warn(text);
+    }
     const double size = scene_size(subject->bounds());
 
     const std::unique_ptr<gl::Window> window =

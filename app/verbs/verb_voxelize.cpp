@@ -9,10 +9,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/terminal/interrupt.h"
 #include "app/terminal/measure.h"
 #include "app/terminal/progress.h"
 #include "app/terminal/report.h"
+#include "app/terminal/terminal.h"
 #include "app/verbs/verbs.h"
 #include "app/verbs/voxelization.h"
 #include "base/error.h"
@@ -93,16 +93,19 @@ double voxelize(Voxelization& voxelization, voxelizer::VoxelWriter* writer, bool
             });
     }
     if (writer == nullptr) return write_ms;
-    const Progress progress("writing", quiet);
-    Stopwatch watch;
-    writer->finish();
-    return write_ms + watch.lap_ms();
+    {
+        const Progress progress("writing", quiet);
+        Stopwatch watch;
+        writer->finish();
+        write_ms += watch.lap_ms();
+    }
+    if (const std::string warning = writer->warning(); !warning.empty()) warn(warning);
+    return write_ms;
 }
 
 ExitCode run(const Options& options) {
     Report report(options.voxelization.common.report);
     GriddedInput scene = load_gridded(options.voxelization);
-    const Interrupt interrupt;  // before there is a file to clean up
     std::unique_ptr<voxelizer::VoxelWriter> writer;
     if (options.output) writer = make_writer(*options.output, scene.grid);
     Voxelization voxelization(

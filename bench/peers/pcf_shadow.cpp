@@ -217,9 +217,8 @@ void PcfShadow::fit(const scenes::Snapshot& snapshot, const scenes::Snapshot& ca
     near_ = 1e300;
     far_ = -1e300;
     for (const scenes::Item& item : casters.items) {
-        const glm::dmat4 from_mesh = light_from_world_ * item.world_from_mesh;
         for (const std::uint32_t index : item.primitive->indices) {
-            const glm::dvec3 p(from_mesh * glm::dvec4(item.positions[index], 1.0));
+            const glm::dvec3 p(light_from_world_ * glm::dvec4(item.world(index), 1.0));
             if (is_perspective_ && !(p.z > 0.0))
                 throw Error(Fault::usage, "shadow map",
                             "what throws shadows reaches beside the light or behind it",

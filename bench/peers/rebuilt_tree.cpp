@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "scenes/transform.h"
+#include "scenes/snapshot.h"
 
 namespace cairn::bench {
 namespace {
@@ -32,8 +32,8 @@ void RebuiltTree::write(const scenes::Snapshot& snapshot) {
     for (const scenes::Item& item : snapshot.items) {
         if (!is_drawn(item)) continue;
         const Geometry& geometry = geometries_[next++];
-        for (std::size_t i = 0; i < item.positions.size(); ++i) {
-            const glm::vec3 world(scenes::transform_point(item.world_from_mesh, item.positions[i]));
+        for (std::size_t i = 0; i < item.vertex_count(); ++i) {
+            const glm::vec3 world(item.world(i));
             for (int axis = 0; axis < 3; ++axis)
                 geometry.vertices[3 * i + std::size_t(axis)] = world[axis];
         }
@@ -50,7 +50,7 @@ void RebuiltTree::build() const {
 void RebuiltTree::add(const scenes::Item& item, RTCBuildQuality quality) {
     reference::EmbreeGeometry owner(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     auto* const vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        owner.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), item.positions.size()));
+        owner.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), item.vertex_count()));
     auto* const indices = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(owner.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 3 * sizeof(std::uint32_t), item.primitive->element_count()));

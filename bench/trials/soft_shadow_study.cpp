@@ -8,7 +8,7 @@
 #include "bench/trials/real_scenes.h"
 #include "reference/shadow_truth.h"
 #include "scenes/load.h"
-#include "scenes/transform.h"
+#include "scenes/snapshot.h"
 
 namespace cairn::bench {
 namespace {
@@ -55,9 +55,8 @@ scenes::Scene standing(const std::string& path) {
         if (item.primitive->topology != scenes::Topology::triangles) continue;
         scenes::Primitive primitive;
         primitive.indices = item.primitive->indices;
-        for (const glm::vec3& position : item.positions)
-            primitive.positions.emplace_back(
-                (scenes::transform_point(item.world_from_mesh, position) - foot) / longest);
+        for (std::size_t vertex = 0; vertex < item.vertex_count(); ++vertex)
+            primitive.positions.emplace_back((item.world(vertex) - foot) / longest);
         primitives.push_back(std::move(primitive));
     }
     return scene_of(std::move(primitives));

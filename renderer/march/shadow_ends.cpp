@@ -60,8 +60,10 @@ ShadowEnds shadow_ends(const interop::MarchView& view, const Tree& tree, bool is
         const glm::dvec2 place(glm::dot(across, middle) + double(result.across_offset),
                                glm::dot(down, middle) + double(result.down_offset));
         const glm::dvec2 reach(glm::dot(glm::abs(across), half), glm::dot(glm::abs(down), half));
-        const glm::ivec2 first = glm::max(glm::ivec2(glm::floor(place - reach - 0.01)), 0);
-        const glm::ivec2 last = glm::min(glm::ivec2(glm::floor(place + reach + 0.01)), SHADOW_ENDS_SIDE - 1);
+        // Clamped while they are doubles: an int cannot hold every one.
+        constexpr double side = SHADOW_ENDS_SIDE;
+        const glm::ivec2 first(glm::clamp(glm::floor(place - reach - 0.01), 0.0, side));
+        const glm::ivec2 last(glm::clamp(glm::floor(place + reach + 0.01), -1.0, side - 1.0));
         const auto end =
             float((glm::dot(to_light, middle) + glm::dot(glm::abs(to_light), half)) + 2.0 * slack);
         for (int y = first.y; y <= last.y; ++y) {

@@ -8,11 +8,17 @@
 #include <tbb/parallel_for.h>
 
 #include "base/error.h"
+#include "scenes/memory_budget.h"
 
 namespace cairn::renderer {
 namespace {
 
-constexpr double most_voxels = 8589934592.0;  // 2^33
+/// A voxel takes 2 bytes; the coarser levels and the bounds of boxes take less than one more.
+constexpr std::uint64_t bytes_per_voxel = 3;
+/// Samples that are far apart along one axis become many voxels. These may be so many times the samples, or
+/// so many where the samples are few.
+constexpr double most_voxels_per_sample = 64.0;
+constexpr double few_voxels = 67108864.0;  // 2^26
 constexpr float unit = 65535.0F;
 constexpr int finest_bounds_shift = 2;
 
@@ -80,7 +86,7 @@ std::vector<std::uint16_t> resample(const scenes::Volume& volume, const FieldFra
 
 }  // namespace
 
-DenseField::DenseField(const scenes::Volume& volume, int n) {
+DenseField::DenseField(const scenes::Volume& volume, int n, std::optional<std::uint64_t> memory_bytes) {
     frame_.n = n;
     frame_.origin = volume.bounds().low;
     frame_.voxel_size = std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
@@ -88,12 +94,18 @@ DenseField::DenseField(const scenes::Volume& volume, int n) {
     for (int axis = 0; axis < 3; ++axis)
         frame_.size[axis] =
             std::max<std::int64_t>(1, std::int64_t(std::ceil(std::min(wide[axis], 1e9) - 1e-6)));
-    if (double(frame_.size.x) * double(frame_.size.y) * double(frame_.size.z) > most_voxels) {
-        throw Error(Fault::memory, volume.name,
-                    fmt::format("{} x {} x {} voxels are too many to hold", frame_.size.x, frame_.size.y,
-                                frame_.size.z),
-                    "its samples are far apart along one axis only: resample it");
+    const std::string shape =
+        fmt::format("{} x {} x {} cubic voxels", frame_.size.x, frame_.size.y, frame_.size.z);
+    const double voxels = double(frame_.size.x) * double(frame_.size.y) * double(frame_.size.z);
+    if (!memory_bytes &&
+        voxels > std::max(few_voxels, most_voxels_per_sample * double(volume.samples.size()))) {
+        throw Error(
+            Fault::input, volume.name,
+            fmt::format("its {} samples would become {}", volume.samples.size(), shape),
+            "they are far apart along some axes only: resample it, or allow it by LoadOptions::memory_bytes");
     }
+    scenes::MemoryBudget(memory_bytes.value_or(scenes::usual_memory_bytes))
+        .charge(volume.name, shape, std::uint64_t(voxels), bytes_per_voxel);
     levels_.push_back({frame_.size, resample(volume, frame_)});
     while (std::max({levels_.back().size.x, levels_.back().size.y, levels_.back().size.z}) > 1) {
         const Level& fine = levels_.back();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "renderer/produce/volume.h"
@@ -19,8 +20,12 @@ class DenseField final : public Field {
 public:
     /// The volume is not needed afterwards.
     /// @param n  n of the tree.
-    /// @throws Error (Fault::memory) if there would be more than 2^33 voxels.
-    DenseField(const scenes::Volume& volume, int n);
+    /// @param memory_bytes  bytes that it may take; none: scenes::usual_memory_bytes, and less for a volume
+    /// of
+    ///                      few samples.
+    /// @throws Error  Fault::input if there are many times as many voxels as samples, as of no scan, and
+    ///                nobody allowed it; Fault::memory if the voxels would take more than may be taken.
+    DenseField(const scenes::Volume& volume, int n, std::optional<std::uint64_t> memory_bytes = std::nullopt);
 
     [[nodiscard]] const FieldFrame& frame() const override { return frame_; }
     void fill(int coarseness, const glm::i64vec3& low, const glm::ivec3& count, float* values) const override;

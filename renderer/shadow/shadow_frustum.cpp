@@ -35,12 +35,10 @@ ViewBounds bounds_of(const glm::dmat4& from_world, const scenes::Snapshot& snaps
     for (const scenes::Item& item : snapshot.items) {
         const scenes::Primitive& primitive = *item.primitive;
         if (primitive.topology != scenes::Topology::triangles) continue;
-        const glm::dmat4 from_mesh = from_world * item.world_from_mesh;
         for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
             std::array<glm::dvec3, 3> corners;
             for (std::size_t k = 0; k < 3; ++k)
-                corners[k] =
-                    glm::dvec3(from_mesh * glm::dvec4(item.positions[primitive.indices[i + k]], 1.0));
+                corners[k] = glm::dvec3(from_world * glm::dvec4(item.world(primitive.indices[i + k]), 1.0));
             for (std::size_t k = 0; k < 3; ++k)
                 seen.add_edge(corners[k], corners[(k + 1) % 3], near_distance);
         }

@@ -63,10 +63,9 @@ void append_vertices(const scenes::Scene& scene, const scenes::Item& item, const
     const glm::mat3 uv_from_mesh = primitive.material >= 0
                                        ? scene.materials[std::size_t(primitive.material)].uv_from_mesh
                                        : glm::mat3(1.0F);
-    for (std::size_t i = 0; i < item.positions.size(); ++i) {
+    for (std::size_t i = 0; i < item.vertex_count(); ++i) {
         Vertex& vertex = vertices.emplace_back();
-        vertex.position =
-            glm::vec3(glm::dvec3(item.world_from_mesh * glm::dvec4(item.positions[i], 1.0)) - origin);
+        vertex.position = glm::vec3(item.world(i) - origin);
         if (!item.normals.empty()) {
             const glm::dvec3 normal = normal_from_mesh * glm::dvec3(item.normals[i]);
             const double length = glm::length(normal);

@@ -41,37 +41,6 @@ namespace {
     throw Error(Fault::usage, "view", what, way_out);
 }
 
-void check_camera(const optics::Camera& camera) {
-    if (!(camera.yfov > 0.0 && camera.yfov < 3.14159)) {
-        fail(fmt::format("a field of view of {} degrees", glm::degrees(camera.yfov)),
-             "choose more than 0 and less than 180 degrees; 45 suit most scenes");
-    }
-    const glm::dvec3 forward = camera.target - camera.eye;
-    const double length = glm::length(forward);
-    if (!std::isfinite(length))
-        fail("the camera's eye or its target is not finite", "use finite coordinates");
-    if (length == 0.0) fail("the camera looks at where it stands", "move its target away from its eye");
-    const double side = glm::length(glm::cross(forward / length, camera.up));
-    if (!std::isfinite(side) || side < 1e-9) {
-        fail("the camera's up direction is the one it looks along", "choose another up direction");
-    }
-}
-
-void check_light(const optics::Light& light) {
-    if (!(light.radius >= 0.0) || !std::isfinite(light.radius))
-        fail(fmt::format("a light with a radius of {}", light.radius), "choose 0, a point, or more");
-    if (!(light.angle >= 0.0 && light.angle < 1.5707)) {
-        fail(fmt::format("a light with an angle of {} degrees", glm::degrees(light.angle)),
-             "choose at least 0 and less than 90 degrees; the sun's is 0.27");
-    }
-    if (!std::isfinite(glm::length(light.half_u)) || !std::isfinite(glm::length(light.half_v)))
-        fail("the light's half axes are not finite", "use finite ones");
-    const glm::dvec3 place = light.positional ? light.position : light.towards;
-    if (!std::isfinite(glm::length(place)) || (!light.positional && glm::length(place) == 0.0)) {
-        fail("the light has no direction", "give it a finite one that is not zero");
-    }
-}
-
 void check_shadow(const ShadowQuality& shadow) {
     if (shadow.samples < 1 || shadow.samples > MAX_SHADOW_RAYS) {
         fail(fmt::format("{} shadow rays per pixel", shadow.samples),
@@ -107,8 +76,8 @@ void check_view(const View& view) {
         fail(fmt::format("a pixel error of {}", view.detail.pixel_error),
              "choose more than 0 pixels; 1 is the default");
     }
-    check_camera(view.camera);
-    check_light(view.light);
+    optics::check_camera(view.camera);
+    optics::check_light(view.light);
     check_shadow(view.shadow);
 }
 

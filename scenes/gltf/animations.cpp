@@ -27,10 +27,13 @@ std::vector<float> read_times(Reader& reader, const std::string& where, int acce
     if (elements.width != 1) fail(elements.where, "key times must be SCALAR");
     if (elements.count == 0) fail(elements.where, "there are no keys");
     auto times = read_finite(reader, where, elements);
-    for (std::size_t i = 1; i < times.size(); ++i)
-        if (!(times[i] > times[i - 1]))
+    for (std::size_t i = 1; i < times.size(); ++i) {
+        if (times[i] < times[i - 1])
             fail(elements.where, fmt::format("key times must increase, but {} follows {} at key {}", times[i],
                                              times[i - 1], i));
+        if (times[i] == times[i - 1])
+            reader.warn(elements.where + ": key times are equal; the last of them counts from there on");
+    }
     return times;
 }
 

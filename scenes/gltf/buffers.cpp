@@ -15,11 +15,7 @@ std::span<const std::uint8_t> Buffers::buffer(int index) {
     if (buffer.uri) {
         auto found = loaded_.find(index);
         if (found == loaded_.end()) {
-            auto loaded =
-                is_data_uri(*buffer.uri)
-                    ? decode_data_uri(where, *buffer.uri)
-                    : read_file(where, resolve_uri(where, *buffer.uri, source_.folder, source_.trust_paths),
-                                most_file_bytes);
+            auto loaded = read_uri(where, *buffer.uri, source_.folder, source_.options);
             budget_.grant(loaded.size());
             found = loaded_.emplace(index, std::move(loaded)).first;
         }
@@ -45,7 +41,7 @@ std::span<const std::uint8_t> Buffers::range(const std::string& where, int buffe
 
 std::vector<std::uint8_t> Buffers::decompressed(int view, const tinygltf::Value& compression) {
     const std::string where =
-        source_.where(element("buffer view", static_cast<std::size_t>(view)) + ", EXT_meshopt_compression");
+        source_.where(element("buffer view", static_cast<std::size_t>(view)) + ", meshopt_compression");
     const auto number = [&](const char* key) {
         return compression.Has(key) ? static_cast<std::uint64_t>(compression.Get(key).GetNumberAsInt()) : 0;
     };
@@ -67,8 +63,9 @@ std::span<const std::uint8_t> Buffers::view(int index) {
     if (const auto found = decompressed_views_.find(index); found != decompressed_views_.end())
         return found->second;
     const tinygltf::BufferView& view = source_.model.bufferViews[static_cast<std::size_t>(index)];
-    if (const auto found = view.extensions.find("EXT_meshopt_compression"); found != view.extensions.end())
-        return decompressed_views_.emplace(index, decompressed(index, found->second)).first->second;
+    for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+        if (const auto found = view.extensions.find(name); found != view.extensions.end())
+            return decompressed_views_.emplace(index, decompressed(index, found->second)).first->second;
     const std::string where = source_.where(element("buffer view", static_cast<std::size_t>(index)));
     return range(where, view.buffer, view.byteOffset, view.byteLength);
 }

@@ -68,7 +68,7 @@ Container split_glb(const std::string& name, std::span<const std::uint8_t> file)
 
 }  // namespace
 
-Container split_container(const std::string& name, std::span<const std::uint8_t> file) {
+Container split_container(const std::string& name, std::span<const std::uint8_t> file, const Limits& limits) {
     if (file.size() >= 4 && little_endian(file, 0) == magic_glb) return split_glb(name, file);
     const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
     const std::size_t start = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
@@ -76,15 +76,15 @@ Container split_container(const std::string& name, std::span<const std::uint8_t>
     if (first == std::string_view::npos) fail(name, "the file is empty", "copy or export it again");
     if (text[first] != '{')
         fail(name, "it is neither a .glb nor JSON", "name a .gltf or .glb file, or builtin:NAME");
-    if (text.size() > most_json_bytes)
-        fail(name, fmt::format("it holds {} bytes of JSON, the limit is {}", text.size(), most_json_bytes),
-             "export it as .glb, or with separate buffers");
+    if (text.size() > limits.json_bytes)
+        fail_limit(name, fmt::format("it holds {} bytes of JSON", text.size()), &Limits::json_bytes,
+                   text.size());
     return {text.substr(start), {}, false};
 }
 
-void check_json_size(const std::string& name, std::string_view json) {
+void check_json_size(const std::string& name, std::string_view json, const Limits& limits) {
     int depth = 0;
-    std::size_t value_count = 1;
+    std::uint64_t value_count = 1;
     bool in_string = false;
     for (std::size_t i = 0; i < json.size(); ++i) {
         const char letter = json[i];
@@ -101,10 +101,10 @@ void check_json_size(const std::string& name, std::string_view json) {
         }
         if (letter == ']' || letter == '}') --depth;
         if (letter == ',') ++value_count;
-        if (value_count > most_json_values)
-            fail(name, fmt::format("its JSON holds more than {} values", most_json_values),
-                 "split the scene");
     }
+    if (value_count > limits.json_values)
+        fail_limit(name, fmt::format("its JSON holds {} values", value_count), &Limits::json_values,
+                   value_count);
 }
 
 }  // namespace cairn::scenes::gltf

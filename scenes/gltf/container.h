@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "scenes/load.h"
+
 namespace cairn::scenes::gltf {
 
 /// The two parts of a .glb (glTF 2.0, 4.4), or a .gltf, which has no binary part.
@@ -15,11 +17,12 @@ struct Container {
 };
 
 /// Splits the bytes of a file. Its first four bytes, not its name, decide whether it is a .glb.
-/// @throws Error  if header or chunk lengths contradict the file's length.
-[[nodiscard]] Container split_container(const std::string& name, std::span<const std::uint8_t> file);
+/// @throws Error  if header or chunk lengths contradict the file's length, or the JSON passes a limit.
+[[nodiscard]] Container split_container(const std::string& name, std::span<const std::uint8_t> file,
+                                        const Limits& limits);
 
 /// Refuses JSON that would take too much stack or memory to parse, before anything parses it.
 /// @throws Error  if the JSON nests too deep, or holds too many values.
-void check_json_size(const std::string& name, std::string_view json);
+void check_json_size(const std::string& name, std::string_view json, const Limits& limits);
 
 }  // namespace cairn::scenes::gltf

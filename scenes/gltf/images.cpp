@@ -44,7 +44,8 @@ constexpr const char* way_out = "only PNG and JPEG are read; convert the image";
 
 }  // namespace
 
-Image decode_image(const std::string& where, std::span<const std::uint8_t> file, Budget& budget) {
+Image decode_image(const std::string& where, std::span<const std::uint8_t> file, Budget& budget,
+                   std::uint64_t most_bytes) {
     if (file.size() > std::numeric_limits<int>::max())
         fail(where, "the image file passes 2 GiB", "make it smaller");
     const auto file_bytes = static_cast<int>(file.size());
@@ -55,8 +56,11 @@ Image decode_image(const std::string& where, std::span<const std::uint8_t> file,
     if (stbi_info_from_memory(file.data(), file_bytes, &width, &height, &channels) == 0)
         fail(where, fmt::format("the image cannot be read ({})", stbi_failure_reason()), way_out);
     const std::uint64_t bytes = 4ULL * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    if (width > widest_image || height > widest_image || bytes > most_image_bytes)
-        fail(where, fmt::format("the image of {} x {} texels is too large", width, height), "scale it down");
+    const std::string size = fmt::format("the image has {} x {} texels", width, height);
+    if (width > widest_image || height > widest_image)
+        fail(where, fmt::format("{}, and {} along a side are the limit", size, widest_image),
+             "scale it down");
+    if (bytes > most_bytes) fail_limit(where, size, &Limits::image_bytes, bytes);
     budget.grant(file.size());
     budget.charge(where, bytes, 1);
 

@@ -1,9 +1,13 @@
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "scenes/gltf/failure.h"
 #include "scenes/gltf/images.h"
 #include "scenes/gltf/reader.h"
@@ -11,6 +15,8 @@
 
 namespace cairn::scenes::gltf {
 namespace {
+
+constexpr const char* only_png = "only PNG and JPEG are read; convert the picture";
 
 /// A texture as a material refers to it: the same of "baseColorTexture" and of the older "diffuseTexture".
 struct TextureUse {
@@ -52,9 +58,11 @@ class Materials {
 public:
     explicit Materials(Reader& reader) : reader_(reader) {}
 
-    void read(std::size_t index) {
+    /// @param used  whether a mesh that is placed has it: only then its texture is read.
+    void read(std::size_t index, bool used) {
         const tinygltf::Material& source = reader_.source.model.materials[index];
-        where_ = reader_.source.where(element("material", index, source.name));
+        material_ = element("material", index, source.name);
+        where_ = reader_.source.where(material_);
         Material material;
         material.name = source.name;
         material.double_sided = source.doubleSided;
@@ -67,8 +75,8 @@ public:
             fail(where_, "unknown \"alphaMode\" " + in_quotes(source.alphaMode));
 
         const TextureUse use = read_base_color(source, material);
-        if (use.texture >= 0) {
-            material.texture = texture(use.texture);
+        if (used && use.texture >= 0) {
+            material.texture = texture(use.texture, material.alpha_mode);
             material.uv_from_mesh = use.uv_from_mesh;
         }
         reader_.texcoord_sets.push_back(material.texture < 0 ? -1 : use.texcoord_set);
@@ -122,12 +130,16 @@ private:
         }
     }
 
-    /// Index into Scene::textures, or -1 when the texture has no image.
-    int texture(int index) {
+    /// Index into Scene::textures, or -1 when the texture has no picture that can be read.
+    /// @throws Error  in that case, if an alpha mask needs it.
+    int texture(int index, AlphaMode mode) {
         const tinygltf::Texture& source = reader_.source.model.textures[static_cast<std::size_t>(index)];
         if (source.source < 0) {
-            reader_.warn(fmt::format("{}: {} of its base colour names no image that can be read", where_,
-                                     element("texture", static_cast<std::size_t>(index))));
+            const std::string what = fmt::format(
+                "{} of its base colour {}", element("texture", static_cast<std::size_t>(index), source.name),
+                format_of(source));
+            if (mode == AlphaMode::mask) fail(where_, what + ", and its alpha mask needs it", only_png);
+            reader_.alter(where_, what + "; the colour factor stands alone", only_png);
             return -1;
         }
         Texture result;
@@ -137,7 +149,8 @@ private:
             result.wrap_s = wrap(sampler.wrapS);
             result.wrap_t = wrap(sampler.wrapT);
         }
-        result.image = image(source.source);
+        result.image = image(source.source, mode);
+        if (result.image < 0) return -1;
         const auto key = std::tuple(result.image, result.wrap_s, result.wrap_t);
         const auto [found, is_new] =
             textures_.try_emplace(key, static_cast<int>(reader_.scene.textures.size()));
@@ -145,48 +158,88 @@ private:
         return found->second;
     }
 
-    /// Index into Scene::images.
-    int image(int index) {
-        const auto [found, is_new] =
-            images_.try_emplace(index, static_cast<int>(reader_.scene.images.size()));
-        if (!is_new) return found->second;
+    /// Why a texture without a "source" has no picture.
+    static std::string format_of(const tinygltf::Texture& texture) {
+        constexpr std::array<std::pair<const char*, const char*>, 4> formats{{{"EXT_texture_avif", "AVIF"},
+                                                                              {"EXT_texture_webp", "WebP"},
+                                                                              {"KHR_texture_basisu", "KTX2"},
+                                                                              {"MSFT_texture_dds", "DDS"}}};
+        for (const auto& [extension, format] : formats)
+            if (texture.extensions.contains(extension))
+                return fmt::format("has only a {} picture ({}), which is not read", format, extension);
+        return "names no picture";
+    }
+
+    /// Index into Scene::images, or -1 when the picture cannot be read.
+    /// @throws Error  in that case, if an alpha mask needs it.
+    int image(int index, AlphaMode mode) {
+        auto found = pictures_.find(index);
+        if (found == pictures_.end()) found = pictures_.emplace(index, read_picture(index)).first;
+        const Picture& picture = found->second;
+        if (!picture.failure) return picture.image;
+        const Error& failure = *picture.failure;
+        if (mode == AlphaMode::mask)
+            fail("", fmt::format("{}; the alpha mask of {} needs it", failure.what(), material_),
+                 failure.way_out());
+        reader_.alter("", fmt::format("{}; the colour factors stand alone", failure.what()),
+                      failure.way_out());
+        return -1;
+    }
+
+    /// A picture that some base colour uses.
+    struct Picture {
+        int image = -1;  ///< index into Scene::images; -1: it cannot be read
+        std::optional<Error> failure;
+    };
+
+    Picture read_picture(int index) {
         const ImageSource& source = reader_.source.images[static_cast<std::size_t>(index)];
         const std::string name = !source.name.empty()                      ? source.name
                                  : source.uri && !is_data_uri(*source.uri) ? *source.uri
                                                                            : std::string();
         const std::string where =
             reader_.source.where(element("image", static_cast<std::size_t>(index), name));
-        Image image = decode(where, source);
-        image.name = name;
-        reader_.scene.images.push_back(std::move(image));
-        return found->second;
+        try {
+            Image image = decode(where, source);
+            image.name = name;
+            reader_.scene.images.push_back(std::move(image));
+            return {static_cast<int>(reader_.scene.images.size()) - 1, std::nullopt};
+        } catch (const Error& error) {
+            if (error.fault() != Fault::input) throw;
+            return {-1, error};
+        }
     }
 
     Image decode(const std::string& where, const ImageSource& source) {
+        const std::uint64_t most_bytes = reader_.source.options.limits.image_bytes;
         if (source.buffer_view >= 0)
-            return decode_image(where, reader_.buffers.view(source.buffer_view), reader_.picture_budget);
+            return decode_image(where, reader_.buffers.view(source.buffer_view), reader_.picture_budget,
+                                most_bytes);
         if (!source.uri) fail(where, "it has neither a URI nor a buffer view");
-        const auto file = is_data_uri(*source.uri)
-                              ? decode_data_uri(where, *source.uri)
-                              : read_file(where,
-                                          resolve_uri(where, *source.uri, reader_.source.folder,
-                                                      reader_.source.trust_paths),
-                                          most_file_bytes);
-        return decode_image(where, file, reader_.picture_budget);
+        const auto file = read_uri(where, *source.uri, reader_.source.folder, reader_.source.options);
+        return decode_image(where, file, reader_.picture_budget, most_bytes);
     }
 
     Reader& reader_;
+    std::string material_;  ///< name of the one that is read, for messages
     std::string where_;
-    std::map<int, int> images_;
+    std::map<int, Picture> pictures_;
     std::map<std::tuple<int, Wrap, Wrap>, int> textures_;
 };
 
 }  // namespace
 
 void read_materials(Reader& reader) {
+    const tinygltf::Model& model = reader.source.model;
+    std::vector<bool> used(model.materials.size());
+    for (std::size_t m = 0; m < model.meshes.size(); ++m) {
+        if (!reader.is_placed(m)) continue;
+        for (const tinygltf::Primitive& primitive : model.meshes[m].primitives)
+            if (primitive.material >= 0) used[static_cast<std::size_t>(primitive.material)] = true;
+    }
     Materials materials(reader);
-    for (std::size_t i = 0; i < reader.source.model.materials.size(); ++i)
-        materials.read(i);
+    for (std::size_t i = 0; i < model.materials.size(); ++i)
+        materials.read(i, used[i]);
 }
 
 }  // namespace cairn::scenes::gltf

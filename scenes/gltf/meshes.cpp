@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "scenes/gltf/draco.h"
 #include "scenes/gltf/failure.h"
 #include "scenes/gltf/reader.h"
@@ -107,6 +108,27 @@ bool read_primitive(Reader& reader, const std::string& where, const tinygltf::Pr
     return true;
 }
 
+Mesh read_mesh(Reader& reader, const std::string& where, const tinygltf::Mesh& source) {
+    Mesh mesh;
+    mesh.name = source.name;
+    std::size_t target_count = 0;
+    for (const tinygltf::Primitive& primitive : source.primitives)
+        target_count = std::max(target_count, primitive.targets.size());
+    for (std::size_t p = 0; p < source.primitives.size(); ++p) {
+        const std::string place = fmt::format("{}, primitive {}", where, p);
+        // glTF asks for as many; what the first ones move is clear without the others.
+        if (const std::size_t count = source.primitives[p].targets.size(); count != target_count)
+            reader.warn(fmt::format("{}: it has {} morph targets, another primitive has {}", place, count,
+                                    target_count));
+        Primitive primitive;
+        if (read_primitive(reader, place, source.primitives[p], primitive))
+            mesh.primitives.push_back(std::move(primitive));
+    }
+    mesh.morph_weights = read_morph_weights(reader, where, source.weights, target_count);
+    if (mesh.morph_weights.empty()) mesh.morph_weights.assign(target_count, 0.0F);
+    return mesh;
+}
+
 }  // namespace
 
 void read_meshes(Reader& reader) {
@@ -114,21 +136,13 @@ void read_meshes(Reader& reader) {
     for (std::size_t m = 0; m < sources.size(); ++m) {
         const std::string where = reader.source.where(element("mesh", m, sources[m].name));
         Mesh& mesh = reader.scene.meshes.emplace_back();
-        mesh.name = sources[m].name;
-        std::size_t target_count = 0;
-        for (std::size_t p = 0; p < sources[m].primitives.size(); ++p) {
-            const tinygltf::Primitive& source = sources[m].primitives[p];
-            const std::string place = fmt::format("{}, primitive {}", where, p);
-            if (p > 0 && source.targets.size() != target_count)
-                fail(place, fmt::format("it has {} morph targets, primitive 0 has {}", source.targets.size(),
-                                        target_count));
-            target_count = source.targets.size();
-            Primitive primitive;
-            if (read_primitive(reader, place, source, primitive))
-                mesh.primitives.push_back(std::move(primitive));
+        try {
+            mesh = read_mesh(reader, where, sources[m]);
+        } catch (const Error& error) {
+            if (reader.is_placed(m) || error.fault() != Fault::input) throw;
+            mesh.name = sources[m].name;
+            reader.warn(std::string(error.what()) + "; no node has this mesh, which was left out");
         }
-        mesh.morph_weights = read_morph_weights(where, sources[m].weights, target_count);
-        if (mesh.morph_weights.empty()) mesh.morph_weights.assign(target_count, 0.0F);
         reader.joints_needed.push_back(joints_needed_by(mesh));
     }
 }

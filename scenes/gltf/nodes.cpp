@@ -99,9 +99,12 @@ Node read_node(Reader& reader, const std::string& where, const tinygltf::Node& s
         node.matrix = read_matrix(where, source.matrix);
     if (const auto light = source.extensions.find("KHR_lights_punctual"); light != source.extensions.end())
         node.light = light->second.Get("light").GetNumberAsInt();
+    const auto visibility = source.extensions.find("KHR_node_visibility");
+    if (visibility != source.extensions.end() && visibility->second.Has("visible"))
+        node.visible = visibility->second.Get("visible").Get<bool>();
     if (source.mesh < 0) return node;
     const auto& mesh = reader.scene.meshes[static_cast<std::size_t>(source.mesh)];
-    node.morph_weights = read_morph_weights(where, source.weights, mesh.morph_weights.size());
+    node.morph_weights = read_morph_weights(reader, where, source.weights, mesh.morph_weights.size());
     const auto instancing = source.extensions.find("EXT_mesh_gpu_instancing");
     if (instancing != source.extensions.end())
         node.instances = read_instances(reader, where, instancing->second);
@@ -125,8 +128,10 @@ void read_cameras(Reader& reader) {
     }
 }
 
+/// Nodes lose lights of a type that is not known.
 void read_lights(Reader& reader) {
     const auto& sources = reader.source.model.lights;
+    std::vector<bool> known(sources.size(), true);
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const tinygltf::Light& source = sources[i];
         Light& light = reader.scene.lights.emplace_back();
@@ -135,15 +140,20 @@ void read_lights(Reader& reader) {
             light.type = Light::Type::directional;
         else if (source.type == "spot")
             light.type = Light::Type::spot;
-        else if (source.type != "point")
-            fail(reader.source.where(element("light", i, source.name)),
-                 "unknown \"type\" " + in_quotes(source.type));
+        else if (source.type != "point") {
+            known[i] = false;
+            reader.warn(fmt::format("{}: its \"type\" {} is not known; it does not shine",
+                                    reader.source.where(element("light", i, source.name)),
+                                    in_quotes(source.type)));
+        }
         if (source.color.size() == 3) light.color = {source.color[0], source.color[1], source.color[2]};
         light.intensity = static_cast<float>(source.intensity);
         light.range = static_cast<float>(source.range);
         light.inner_cone = static_cast<float>(source.spot.innerConeAngle);
         light.outer_cone = static_cast<float>(source.spot.outerConeAngle);
     }
+    for (Node& node : reader.scene.nodes)
+        if (node.light >= 0 && !known[static_cast<std::size_t>(node.light)]) node.light = -1;
 }
 
 void read_scenes(Reader& reader) {

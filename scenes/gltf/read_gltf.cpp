@@ -11,8 +11,8 @@
 namespace cairn::scenes::gltf {
 namespace {
 
-Scene convert(const std::filesystem::path& path, bool trust_paths) {
-    Reader reader(read_source(path, trust_paths));
+Scene convert(const std::filesystem::path& path, const LoadOptions& options) {
+    Reader reader(read_source(path, options), options);
     check_extensions(reader);
     read_materials(reader);
     read_meshes(reader);
@@ -20,19 +20,21 @@ Scene convert(const std::filesystem::path& path, bool trust_paths) {
     check_forest(reader);
     read_skins(reader);
     read_animations(reader);
+    reader.scene.placing = reader.placing_limits();
     return std::move(reader.scene);
 }
 
 }  // namespace
 
-Scene read_gltf(const std::filesystem::path& path, bool trust_paths) {
+Scene read_gltf(const std::filesystem::path& path, const LoadOptions& options) {
     const std::string name = path.filename().string();
     try {
-        return convert(path, trust_paths);
+        return convert(path, options);
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {
-        fail(name, "it needs more memory than there is", "the file is damaged or too large for this machine");
+        throw Error(Fault::memory, name, "it needs more memory than there is",
+                    "use a machine with more, or split the scene");
     } catch (const std::exception& error) {
         fail(name, std::string("a library gave up on it: ") + error.what());
     }

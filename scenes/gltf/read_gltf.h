@@ -2,12 +2,12 @@
 
 #include <filesystem>
 
-#include "scenes/scene.h"
+#include "scenes/load.h"
 
 namespace cairn::scenes::gltf {
 
 /// Reads a .gltf or .glb file: load() for paths that are not built-in scenes.
-/// @throws Error  Fault::input, as load().
-[[nodiscard]] Scene read_gltf(const std::filesystem::path& path, bool trust_paths);
+/// @throws Error  as load().
+[[nodiscard]] Scene read_gltf(const std::filesystem::path& path, const LoadOptions& options);
 
 }  // namespace cairn::scenes::gltf

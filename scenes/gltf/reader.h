@@ -13,10 +13,7 @@ namespace cairn::scenes::gltf {
 
 /// The data that the steps of one conversion share. The steps are the functions below, and run in this order.
 struct Reader {
-    explicit Reader(Source read) : source(std::move(read)) {
-        budget.grant(source.json_bytes + source.glb_chunk.size());
-        scene.name = source.name;
-    }
+    Reader(Source read, const LoadOptions& options);
     Reader(const Reader&) = delete;
     Reader& operator=(const Reader&) = delete;
     Reader(Reader&&) = delete;
@@ -24,8 +21,9 @@ struct Reader {
     ~Reader() = default;
 
     Source source;
-    Budget budget{geometry_floor_bytes};
-    Budget picture_budget{picture_floor_bytes};
+    MemoryBudget memory;
+    Budget budget;
+    Budget picture_budget;
     Buffers buffers{source, budget};
     Accessors accessors{source, buffers, budget};
     Scene scene;
@@ -36,6 +34,18 @@ struct Reader {
 
     /// Adds a warning, unless it is there already.
     void warn(const std::string& text);
+    /// Adds a warning that what is voxelized or shown is not what the file means.
+    /// @throws Error (Fault::input) instead, if the file is read strictly.
+    void alter(const std::string& where, const std::string& what, const std::string& way_out);
+    /// Whether a node has the mesh.
+    [[nodiscard]] bool is_placed(std::size_t mesh) const { return placed_[mesh]; }
+    /// What placing the scene may take, once it is read.
+    [[nodiscard]] PlacingLimits placing_limits() const;
+
+private:
+    void add_warning(Warning warning);
+
+    std::vector<bool> placed_;  ///< per mesh
 };
 
 /// @throws Error  if extensionsRequired names an extension that is not supported. Optional ones become

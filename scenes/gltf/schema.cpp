@@ -51,7 +51,8 @@ std::string shown(const json& value) {
 
 class Checker {
 public:
-    Checker(const std::string& name, json& document) : name_(name), document_(document) {}
+    Checker(const std::string& name, json& document, const Limits& limits)
+        : name_(name), document_(document), limits_(limits) {}
 
     void object(json& value, const Shape& shape, const Frame& frame) {
         if (!value.is_object()) refuse(frame, fmt::format("should be an object, is {}", shown(value)));
@@ -74,9 +75,13 @@ private:
         }
     }
 
-    [[noreturn]] void refuse(const Frame& frame, const std::string& what) const {
+    [[nodiscard]] std::string place_of(const Frame& frame) const {
         const std::string where = described(&frame);
-        fail(where.empty() ? name_ : name_ + ": " + where, what);
+        return where.empty() ? name_ : name_ + ": " + where;
+    }
+
+    [[noreturn]] void refuse(const Frame& frame, const std::string& what) const {
+        fail(place_of(frame), what);
     }
 
     [[noreturn]] void wrong_type(const Frame& frame, const Property& property, const char* expected,
@@ -134,10 +139,9 @@ private:
     template <typename Each>
     void each_of(json& value, const Property& property, const Frame& frame, Each each) const {
         if (!value.is_array()) wrong_type(frame, property, "an array", value);
-        const std::size_t most = property.length != 0 ? property.length : most_elements;
-        if (value.size() > most)
-            refuse(frame, fmt::format("\"{}\" holds {} elements, the limit is {}", property.name,
-                                      value.size(), most));
+        if (value.size() > limits_.*property.most)
+            fail_limit(place_of(frame), fmt::format("\"{}\" holds {} elements", property.name, value.size()),
+                       property.most, value.size());
         std::size_t i = 0;
         for (json& entry : value) {
             const Frame inner{&frame, property.label, &i, &entry};
@@ -202,12 +206,13 @@ private:
 
     const std::string& name_;
     json& document_;
+    const Limits& limits_;
 };
 
 }  // namespace
 
-void check_schema(const std::string& name, json& document) {
-    Checker(name, document).object(document, schema_of_document(), Frame{});
+void check_schema(const std::string& name, json& document, const Limits& limits) {
+    Checker(name, document, limits).object(document, schema_of_document(), Frame{});
 }
 
 }  // namespace cairn::scenes::gltf

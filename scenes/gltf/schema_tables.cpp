@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "scenes/gltf/limits.h"
-
 namespace cairn::scenes::gltf {
 namespace {
 
@@ -22,8 +20,8 @@ constexpr Property object(const char* name, const Shape& inside, bool must = fal
     return {name, Kind::object, must, nullptr, 0, &inside};
 }
 constexpr Property objects(const char* name, const char* label, const Shape& inside, bool must = false,
-                           std::size_t most = 0) {
-    return {name, Kind::objects, must, nullptr, most, &inside, label};
+                           std::uint64_t Limits::*most = &Limits::elements) {
+    return {name, Kind::objects, must, nullptr, 0, &inside, label, most};
 }
 
 constexpr const char* lights_array = "/extensions/KHR_lights_punctual/lights";
@@ -46,7 +44,8 @@ constexpr std::array meshopt_rows{index("buffer", "/buffers", required),
                                   value("mode", Kind::string, required),
                                   value("filter", Kind::string)};
 constexpr Shape meshopt{meshopt_rows};
-constexpr std::array view_extension_rows{object("EXT_meshopt_compression", meshopt)};
+constexpr std::array view_extension_rows{object("EXT_meshopt_compression", meshopt),
+                                         object("KHR_meshopt_compression", meshopt)};
 constexpr Shape view_extensions{view_extension_rows};
 constexpr std::array view_rows{index("buffer", "/buffers", required), value("byteOffset", Kind::whole),
                                value("byteLength", Kind::whole, required), value("byteStride", Kind::whole),
@@ -116,7 +115,9 @@ constexpr std::array material_rows{
     value("doubleSided", Kind::boolean), object("extensions", material_extensions)};
 constexpr Shape material{material_rows};
 
-constexpr std::array texture_rows{index("source", "/images"), index("sampler", "/samplers")};
+// The formats of its other pictures are told, not read.
+constexpr std::array texture_rows{index("source", "/images"), index("sampler", "/samplers"),
+                                  value("extensions", Kind::any_object)};
 constexpr Shape texture{texture_rows};
 constexpr std::array image_rows{value("name", Kind::string), value("uri", Kind::string),
                                 index("bufferView", "/bufferViews")};
@@ -130,7 +131,10 @@ constexpr std::array node_light_rows{index("light", lights_array, required)};
 constexpr Shape node_light{node_light_rows};
 constexpr std::array instancing_rows{index("attributes", "/accessors", required, Kind::index_map)};
 constexpr Shape instancing{instancing_rows};
+constexpr std::array visibility_rows{value("visible", Kind::boolean)};
+constexpr Shape visibility{visibility_rows};
 constexpr std::array node_extension_rows{object("KHR_lights_punctual", node_light),
+                                         object("KHR_node_visibility", visibility),
                                          object("EXT_mesh_gpu_instancing", instancing)};
 constexpr Shape node_extensions{node_extension_rows};
 constexpr std::array node_rows{value("name", Kind::string),
@@ -175,7 +179,12 @@ constexpr Shape document_extensions{document_extension_rows};
 
 // --- animation
 
-constexpr std::array target_rows{index("node", "/nodes"), value("path", Kind::string, required)};
+constexpr std::array pointer_rows{value("pointer", Kind::string, required)};
+constexpr Shape pointer{pointer_rows};
+constexpr std::array target_extension_rows{object("KHR_animation_pointer", pointer)};
+constexpr Shape target_extensions{target_extension_rows};
+constexpr std::array target_rows{index("node", "/nodes"), value("path", Kind::string, required),
+                                 object("extensions", target_extensions)};
 constexpr Shape target{target_rows};
 constexpr std::array channel_rows{value("sampler", Kind::whole_int, required),
                                   object("target", target, required)};
@@ -197,7 +206,7 @@ constexpr std::array document_rows{object("asset", asset, required),
                                    objects("bufferViews", "buffer view", view),
                                    objects("accessors", "accessor", accessor),
                                    objects("meshes", "mesh", mesh),
-                                   objects("materials", "material", material, !required, most_materials),
+                                   objects("materials", "material", material, !required, &Limits::materials),
                                    objects("textures", "texture", texture),
                                    objects("images", "image", image),
                                    objects("samplers", "texture sampler", sampler),

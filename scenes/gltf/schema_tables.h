@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+
+#include "scenes/load.h"
 
 namespace cairn::scenes::gltf {
 
@@ -31,10 +34,11 @@ struct Property {
     bool required = false;
     /// For kinds of indices: JSON pointer to the array that they point into.
     const char* target = nullptr;
-    /// For numbers: their count, 0 = any; for objects: their greatest count, 0 = most_elements.
-    std::size_t length = 0;
+    std::size_t length = 0;         ///< for numbers: their count, 0 = any
     const Shape* inside = nullptr;  ///< for an object or objects: their properties
     const char* label = "";         ///< for objects: the name of one of them in messages
+    /// For arrays: the limit of their elements.
+    std::uint64_t Limits::*most = &Limits::elements;
 };
 
 struct Shape {

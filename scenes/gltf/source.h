@@ -9,6 +9,8 @@
 
 #include <tiny_gltf.h>
 
+#include "scenes/load.h"
+
 namespace cairn::scenes::gltf {
 
 /// One of the file's "buffers". Its bytes are read when something needs them (buffers.h).
@@ -28,7 +30,7 @@ struct ImageSource {
 struct Source {
     std::string name;  ///< the file's name without its folder, for messages
     std::filesystem::path folder;
-    bool trust_paths = false;
+    LoadOptions options;
     std::vector<std::uint8_t> file;           ///< the whole .glb; empty for .gltf
     std::span<const std::uint8_t> glb_chunk;  ///< the binary chunk of the .glb, inside `file`
     std::uint64_t json_bytes = 0;
@@ -47,6 +49,6 @@ struct Source {
 
 /// Reads and checks a file. tinygltf parses only JSON that has passed the checks, and opens no file.
 /// @throws Error  (Fault::input) if the file cannot be read or does not pass.
-[[nodiscard]] Source read_source(const std::filesystem::path& path, bool trust_paths);
+[[nodiscard]] Source read_source(const std::filesystem::path& path, const LoadOptions& options);
 
 }  // namespace cairn::scenes::gltf

@@ -1,12 +1,14 @@
 #include "scenes/gltf/uri.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
-#include <fstream>
 
 #include <fmt/format.h>
 
+#include "base/input_file.h"
 #include "scenes/gltf/failure.h"
+#include "scenes/gltf/limits.h"
 
 namespace cairn::scenes::gltf {
 namespace {
@@ -88,7 +90,10 @@ std::vector<std::uint8_t> decode_data_uri(const std::string& where, std::string_
     if (comma == std::string_view::npos) fail(where, "its data: URI has no comma, hence no data");
     const std::string_view head = uri.substr(0, comma);
     const std::string_view body = uri.substr(comma + 1);
-    if (head.ends_with(";base64")) return base64_decoded(where, body);
+    if (head.ends_with(";base64")) {
+        if (body.find('%') == std::string_view::npos) return base64_decoded(where, body);
+        return base64_decoded(where, percent_decoded(body));
+    }
     const std::string bytes = percent_decoded(body);
     return {bytes.begin(), bytes.end()};
 }
@@ -100,7 +105,10 @@ std::filesystem::path resolve_uri(const std::string& where, std::string_view uri
         fail(where,
              fmt::format("its URI {} has a scheme; only data: and file names are read", in_quotes(uri)),
              "save what it points to beside the file and name it there");
-    const std::string decoded = percent_decoded(uri);
+    // Before decoding: an encoded backslash is part of a name.
+    std::string slashed(uri);
+    std::ranges::replace(slashed, '\\', '/');
+    const std::string decoded = percent_decoded(slashed);
     if (decoded.find('\0') != std::string::npos) fail(where, "its URI holds a zero byte");
     const auto path = std::filesystem::path(decoded).lexically_normal();
     if (!trust_paths) {
@@ -114,27 +122,23 @@ std::filesystem::path resolve_uri(const std::string& where, std::string_view uri
 }
 
 std::vector<std::uint8_t> read_file(const std::string& where, const std::filesystem::path& path,
-                                    std::uint64_t most_bytes) {
-    std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    const std::string name = in_quotes(path.filename().string());
-    if (!std::filesystem::exists(status))
-        fail(where, fmt::format("there is no file {}", name),
-             "check the name, and that all files were copied together");
-    if (!std::filesystem::is_regular_file(status))
-        fail(where, fmt::format("{} is not a regular file", name), "name a file");
-    const std::uint64_t size = std::filesystem::file_size(path, error);
-    if (error)
-        fail(where, fmt::format("{} cannot be read: {}", name, error.message()), "check its permissions");
-    if (size > most_bytes)
-        fail(where, fmt::format("{} holds {} bytes, the limit is {}", name, size, most_bytes),
-             "split the file");
-    std::ifstream stream(path, std::ios::binary);
-    std::vector<std::uint8_t> bytes(stream ? size : 0);
-    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    if (!stream || static_cast<std::uint64_t>(stream.gcount()) != size)
-        fail(where, fmt::format("{} cannot be read", name), "check its permissions");
+                                    const Limits& limits, const std::filesystem::path& folder) {
+    InputFile file(where, path, folder);
+    if (file.size_bytes() > limits.file_bytes)
+        fail_limit(where,
+                   fmt::format("{} holds {} bytes", in_quotes(path.filename().string()), file.size_bytes()),
+                   &Limits::file_bytes, file.size_bytes());
+    std::vector<std::uint8_t> bytes(file.size_bytes());
+    file.read(bytes.data(), bytes.size());
     return bytes;
+}
+
+std::vector<std::uint8_t> read_uri(const std::string& where, std::string_view uri,
+                                   const std::filesystem::path& folder, const LoadOptions& options) {
+    if (is_data_uri(uri)) return decode_data_uri(where, uri);
+    const std::filesystem::path path = resolve_uri(where, uri, folder, options.trust_paths);
+    const std::filesystem::path inside = folder.empty() ? std::filesystem::path(".") : folder;
+    return read_file(where, path, options.limits, options.trust_paths ? std::filesystem::path() : inside);
 }
 
 }  // namespace cairn::scenes::gltf

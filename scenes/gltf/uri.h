@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scenes/load.h"
+
 namespace cairn::scenes::gltf {
 
 [[nodiscard]] bool is_data_uri(std::string_view uri);
@@ -14,7 +16,7 @@ namespace cairn::scenes::gltf {
 /// @throws Error  if the encoding is broken.
 [[nodiscard]] std::vector<std::uint8_t> decode_data_uri(const std::string& where, std::string_view uri);
 
-/// The file that a relative URI names.
+/// The file that a relative URI names. A backslash divides folders, as exporters on Windows write it.
 ///
 /// @param folder       the folder of the .gltf file.
 /// @param trust_paths  allows absolute paths and paths that leave the folder, but no other schemes.
@@ -23,8 +25,16 @@ namespace cairn::scenes::gltf {
                                                 const std::filesystem::path& folder, bool trust_paths);
 
 /// The bytes of a regular file.
-/// @throws Error  if it is missing, is no regular file, or is larger than `most_bytes`.
+/// @param folder  the folder that it must lie in, once links are followed; empty: any.
+/// @throws Error  if it is missing, is no regular file, is larger than Limits::file_bytes, or lies elsewhere.
 [[nodiscard]] std::vector<std::uint8_t> read_file(const std::string& where, const std::filesystem::path& path,
-                                                  std::uint64_t most_bytes);
+                                                  const Limits& limits,
+                                                  const std::filesystem::path& folder = {});
+
+/// The bytes that a URI stands for: its own, if it is a "data:" URI, or those of a file beside the glTF file.
+/// @throws Error  as the functions above.
+[[nodiscard]] std::vector<std::uint8_t> read_uri(const std::string& where, std::string_view uri,
+                                                 const std::filesystem::path& folder,
+                                                 const LoadOptions& options);
 
 }  // namespace cairn::scenes::gltf

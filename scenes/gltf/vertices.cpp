@@ -90,7 +90,10 @@ std::vector<SkinWeights> read_skin_set(const VertexSource& source, int set) {
     return result;
 }
 
-/// Scales the weights of each vertex, over all sets, to the sum 1.
+/// Every multiple of 1 / weight_steps up to 1 is a float.
+constexpr std::int64_t weight_steps = 1 << 24;
+
+/// Scales the weights of each vertex, over all sets, to the sum 1, exactly.
 void normalize_weights(Primitive& result) {
     for (std::size_t i = 0; i < result.skin.size(); ++i) {
         double sum = 0.0;
@@ -102,13 +105,24 @@ void normalize_weights(Primitive& result) {
         for (const auto& set : result.more_skin)
             add(set[i]);
         if (sum <= 0.0) continue;
+        // In whole steps, of which the largest weight takes what rounding leaves: the sum is 1 and nothing
+        // near it, else a vertex would shrink towards the world's origin, by metres where that is an Earth's
+        // radius away.
+        std::int64_t left = weight_steps;
+        float* largest = &result.skin[i].weights.x;
         const auto scale = [&](SkinWeights& set) {
-            for (int c = 0; c < 4; ++c)
-                set.weights[c] = static_cast<float>(set.weights[c] / sum);
+            for (int c = 0; c < 4; ++c) {
+                float& weight = set.weights[c];
+                const auto steps = static_cast<std::int64_t>(std::lround(weight / sum * weight_steps));
+                weight = static_cast<float>(steps) / static_cast<float>(weight_steps);
+                left -= steps;
+                if (weight > *largest) largest = &weight;
+            }
         };
         scale(result.skin[i]);
         for (auto& set : result.more_skin)
             scale(set[i]);
+        *largest += static_cast<float>(left) / static_cast<float>(weight_steps);
     }
 }
 
@@ -174,15 +188,16 @@ void read_morph_targets(const VertexSource& source, const std::vector<std::map<s
     }
 }
 
-std::vector<float> read_morph_weights(const std::string& where, const std::vector<double>& weights,
-                                      std::size_t target_count) {
+std::vector<float> read_morph_weights(Reader& reader, const std::string& where,
+                                      const std::vector<double>& weights, std::size_t target_count) {
     if (weights.empty()) return {};
     if (weights.size() != target_count)
-        fail(where, fmt::format("it has {} weights for {} morph targets", weights.size(), target_count));
-    std::vector<float> result;
-    for (const double weight : weights) {
-        const auto narrow = static_cast<float>(weight);
-        result.push_back(std::isfinite(narrow) ? narrow : 0.0F);
+        reader.warn(fmt::format("{}: it has {} weights for {} morph targets; others are 0 or ignored", where,
+                                weights.size(), target_count));
+    std::vector<float> result(target_count, 0.0F);
+    for (std::size_t i = 0; i < std::min(weights.size(), target_count); ++i) {
+        const auto narrow = static_cast<float>(weights[i]);
+        result[i] = std::isfinite(narrow) ? narrow : 0.0F;
     }
     return result;
 }

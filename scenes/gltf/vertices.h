@@ -31,8 +31,9 @@ void read_vertices(const VertexSource& source, Primitive& result);
 void read_morph_targets(const VertexSource& source, const std::vector<std::map<std::string, int>>& targets,
                         Primitive& result);
 
-/// The morph weights of a mesh or node; empty if the file gives none. Weights that are not finite count as 0.
-[[nodiscard]] std::vector<float> read_morph_weights(const std::string& where,
+/// The morph weights of a mesh or node, one per target; empty if the file gives none. Weights that are not
+/// finite count as 0, and so do those that the file lacks, with a warning.
+[[nodiscard]] std::vector<float> read_morph_weights(Reader& reader, const std::string& where,
                                                     const std::vector<double>& weights,
                                                     std::size_t target_count);
 

@@ -142,7 +142,7 @@ Layout layout_of(const std::string& name, const Keys& keys) {
 
 /// The samples' bytes, still packed if they are.
 std::vector<std::byte> data_bytes(const std::string& path, const Header& header, std::vector<std::byte> file,
-                                  std::size_t needed) {
+                                  std::size_t needed, const LoadOptions& options) {
     const std::string data_file = header.keys.at("ElementDataFile");
     if (data_file == "LOCAL" || data_file == "Local" || data_file == "local") {
         file.erase(file.begin(), file.begin() + std::ptrdiff_t(header.bytes));
@@ -154,8 +154,11 @@ std::vector<std::byte> data_bytes(const std::string& path, const Header& header,
     if (data_file.empty() || other.filename() != other || other == "..")
         fail(path, fmt::format("its samples are in \"{:.80}\", which is not a file beside it", data_file),
              "write it as one .mha");
-    std::vector<std::byte> data =
-        read_file(data_file, (std::filesystem::path(path).parent_path() / other).string());
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    const std::string inside = folder.empty() ? "." : folder.string();
+    std::vector<std::byte> data = read_file(fmt::format("{}: its data file", path), (folder / other).string(),
+                                            options.memory_bytes.value_or(usual_memory_bytes),
+                                            options.trust_paths ? std::string() : inside);
     const auto skip_text = find(header.keys, {"HeaderSize"});
     const double skip = skip_text ? numbers(path, "HeaderSize", *skip_text, 1)[0] : 0.0;
     if (skip == -1.0) {  // the samples are the file's end
@@ -170,13 +173,16 @@ std::vector<std::byte> data_bytes(const std::string& path, const Header& header,
 
 }  // namespace
 
-Volume read_metaimage(const std::string& path) {
-    std::vector<std::byte> file = read_file(path, path);
+Volume read_metaimage(const std::string& path, const LoadOptions& options) {
+    std::vector<std::byte> file = read_file(path, path, options.memory_bytes.value_or(usual_memory_bytes));
     const Header header = read_header(path, file);
     const Layout layout = layout_of(path, header.keys);
-    const std::size_t needed = checked_bytes(path, layout);
-    std::vector<std::byte> data = data_bytes(path, header, std::move(file), needed);
-    if (flag(header.keys, {"CompressedData"}, false)) data = inflate(path, data, needed);
+    const std::size_t needed = checked_bytes(path, layout, options.memory_bytes.value_or(usual_memory_bytes));
+    std::vector<std::byte> data = data_bytes(path, header, std::move(file), needed, options);
+    if (flag(header.keys, {"CompressedData"}, false)) {
+        check_ratio(path, data.size(), needed);
+        data = inflate(path, data, needed);
+    }
     return decode(path, layout, data);
 }
 

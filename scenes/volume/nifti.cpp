@@ -101,8 +101,8 @@ void take_place(const Header& header, Layout& layout) {
 
 }  // namespace
 
-Volume read_nifti(const std::string& path) {
-    std::vector<std::byte> file = read_file(path, path);
+Volume read_nifti(const std::string& path, const LoadOptions& options) {
+    std::vector<std::byte> file = read_file(path, path, options.memory_bytes.value_or(usual_memory_bytes));
     const bool packed = file.size() >= 2 && file[0] == std::byte(0x1F) && file[1] == std::byte(0x8B);
     const std::vector<std::byte> unpacked_header =
         packed ? inflate(path, file, header_bytes) : std::vector<std::byte>();
@@ -129,13 +129,16 @@ Volume read_nifti(const std::string& path) {
     const double offset = header.number(108);
     if (!(offset >= double(header_bytes) && offset <= double(most_offset)))
         fail(path, fmt::format("its samples start at byte {}", offset));
-    const std::size_t needed = checked_bytes(path, layout);
+    const std::size_t needed = checked_bytes(path, layout, options.memory_bytes.value_or(usual_memory_bytes));
     const auto first = std::size_t(offset);
-    if (packed) file = inflate(path, file, first + needed);
+    if (packed) {
+        check_ratio(path, file.size(), first + needed);
+        file = inflate(path, file, first + needed);
+    }
     if (file.size() < first)
         fail(path, fmt::format("it ends at byte {}, before its samples at {}", file.size(), first));
     Volume volume = decode(path, layout, std::span<const std::byte>(file).subspan(first));
-    if (series) volume.warnings.push_back(path + ": it is a series; the first volume is read");
+    if (series) volume.warnings.push_back({path + ": it is a series; the first volume is read", true});
     return volume;
 }
 

@@ -4,8 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 
@@ -13,11 +11,12 @@
 #include <zlib.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
+#include "scenes/memory_budget.h"
 
 namespace cairn::scenes::volume {
 namespace {
 
-constexpr std::int64_t most_samples = std::int64_t(1) << 33;
 constexpr double most_value = 65535.0;
 
 template <typename T>
@@ -116,8 +115,8 @@ Placed place(const std::string& name, const Layout& layout) {
         layout.origin + 0.5 * (layout.axes[0] * last.x + layout.axes[1] * last.y + layout.axes[2] * last.z);
     volume.origin = centre - 0.5 * volume.spacing * (glm::dvec3(volume.size) - 1.0);
     if (!turn.exact)
-        volume.warnings.push_back(name +
-                                  ": its axes are not along the world's; it is shown turned to the nearest");
+        volume.warnings.push_back(
+            {name + ": its axes are not along the world's; it is shown turned to the nearest", true});
     return placed;
 }
 
@@ -134,6 +133,11 @@ void check_place(const std::string& name, const Layout& layout) {
     if (!std::isfinite(glm::length(layout.origin))) fail(name, "its origin is not finite");
     if (!std::isfinite(layout.slope) || !std::isfinite(layout.intercept))
         fail(name, "the scale of its values is not finite");
+}
+
+/// Whether another member of a gzip stream starts there, and not the zeros that pad some files.
+bool begins_member(std::span<const std::byte> rest) {
+    return rest.size() >= 2 && rest[0] == std::byte(0x1F) && rest[1] == std::byte(0x8B);
 }
 
 }  // namespace
@@ -159,27 +163,30 @@ void fail(const std::string& name, const std::string& what, const std::string& w
     throw Error(Fault::input, name, what, way_out);
 }
 
-std::size_t checked_bytes(const std::string& name, const Layout& layout) {
+std::size_t checked_bytes(const std::string& name, const Layout& layout, std::uint64_t memory_bytes) {
     std::int64_t count = 1;
     for (int axis = 0; axis < 3; ++axis) {
         const std::int64_t size = layout.size[axis];
         if (size < 1) fail(name, fmt::format("it has {} samples along axis {}", size, "ijk"[axis]));
-        if (size > (1 << 20) || count > most_samples / size)
-            fail(
-                name,
-                fmt::format("{} x {} x {} samples are too many", layout.size.x, layout.size.y, layout.size.z),
-                "cut or reduce the volume");
-        count *= size;
+        if (size > (1 << 20))
+            fail(name, fmt::format("it has {} samples along axis {}", size, "ijk"[axis]),
+                 "cut or reduce the volume: the limit is 2^20");
+        count *= size;  // below 2^60
     }
-    return std::size_t(count) * bytes_of(layout.type);
+    const std::size_t each = bytes_of(layout.type);
+    MemoryBudget(memory_bytes)
+        .charge(name, fmt::format("its {} x {} x {} samples", layout.size.x, layout.size.y, layout.size.z),
+                std::uint64_t(count), each + sizeof(Volume::samples[0]));
+    return std::size_t(count) * each;
 }
 
 Volume decode(const std::string& name, const Layout& layout, std::span<const std::byte> bytes) {
-    const std::size_t needed = checked_bytes(name, layout);
     check_place(name, layout);
+    const std::size_t count =
+        std::size_t(layout.size.x) * std::size_t(layout.size.y) * std::size_t(layout.size.z);
+    const std::size_t needed = count * bytes_of(layout.type);
     if (bytes.size() < needed)
         fail(name, fmt::format("its samples take {} bytes, and it holds {}", needed, bytes.size()));
-    const std::size_t count = needed / bytes_of(layout.type);
     Placed placed = place(name, layout);
     Volume& volume = placed.volume;
     const std::array<std::int64_t, 3>& strides = placed.strides;
@@ -202,7 +209,7 @@ Volume decode(const std::string& name, const Layout& layout, std::span<const std
     if (odd == count) fail(name, "none of its values is a finite number", "export it again");
     if (odd > 0)
         volume.warnings.push_back(
-            fmt::format("{}: {} values are not finite; they count as empty", name, odd));
+            {fmt::format("{}: {} values are not finite; they count as empty", name, odd), true});
     volume.low = low;
     volume.high = high > low ? high : low + 1.0;
     const double scale = most_value / (volume.high - volume.low);
@@ -223,17 +230,20 @@ Volume decode(const std::string& name, const Layout& layout, std::span<const std
     return std::move(placed.volume);
 }
 
-std::vector<std::byte> read_file(const std::string& name, const std::string& path) {
-    if (std::filesystem::is_directory(path)) fail(name, "it is a folder", "name a file");
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    if (!file) fail(name, "it cannot be opened", "check the path and the permissions");
-    const std::streamoff size = file.tellg();
-    if (size < 0) fail(name, "it is not a file that can be read", "check the path");
-    std::vector<std::byte> bytes(static_cast<std::size_t>(size));
-    file.seekg(0);
-    file.read(reinterpret_cast<char*>(bytes.data()), size);
-    if (!file) fail(name, "reading it stopped before its end", "check the disk");
+std::vector<std::byte> read_file(const std::string& name, const std::string& path, std::uint64_t most_bytes,
+                                 const std::string& folder) {
+    InputFile file(name, path, folder);
+    MemoryBudget(most_bytes).charge(name, "its bytes", file.size_bytes(), 1);
+    std::vector<std::byte> bytes(file.size_bytes());
+    file.read(bytes.data(), bytes.size());
     return bytes;
+}
+
+void check_ratio(const std::string& name, std::size_t packed, std::size_t needed) {
+    constexpr std::size_t most_per_byte = 1032;  // zlib's technical details: deflate reaches 1032 to 1
+    if (needed / most_per_byte > packed)
+        fail(name,
+             fmt::format("its samples take {} bytes, and its {} bytes cannot hold so many", needed, packed));
 }
 
 std::vector<std::byte> inflate(const std::string& name, std::span<const std::byte> packed, std::size_t most) {
@@ -258,6 +268,10 @@ std::vector<std::byte> inflate(const std::string& name, std::span<const std::byt
         stream.avail_out = uInt(room);
         const int result = ::inflate(&stream, Z_NO_FLUSH);
         made += room - stream.avail_out;
+        if (result == Z_STREAM_END && begins_member(packed.subspan(taken - stream.avail_in))) {
+            inflateReset(&stream);
+            continue;
+        }
         if (result == Z_STREAM_END || result == Z_BUF_ERROR) break;
         if (result == Z_MEM_ERROR) throw Error(Fault::memory, name, "there is no memory to unpack it");
         if (result != Z_OK)

@@ -31,19 +31,31 @@ struct Layout {
 [[noreturn]] void fail(const std::string& name, const std::string& what,
                        const std::string& way_out = "the file is damaged; export it again");
 
-/// Bytes of all samples. @throws Error if a size is not positive, or there are more than 2^33 samples.
-[[nodiscard]] std::size_t checked_bytes(const std::string& name, const Layout& layout);
+/// Bytes of all samples in the file.
+/// @throws Error  Fault::input if a size is not positive; Fault::memory if the samples, as they are in the
+/// file
+///                and as Volume::samples, would take more than so many bytes.
+[[nodiscard]] std::size_t checked_bytes(const std::string& name, const Layout& layout,
+                                        std::uint64_t memory_bytes);
 
-/// The samples, turned to the world's axes. `bytes` holds all samples.
+/// The samples, turned to the world's axes. `bytes` holds all samples, whose layout checked_bytes() has
+/// passed.
 [[nodiscard]] Volume decode(const std::string& name, const Layout& layout, std::span<const std::byte> bytes);
 
-[[nodiscard]] std::vector<std::byte> read_file(const std::string& name, const std::string& path);
+/// @param folder  the folder that the file must lie in, once links are followed; empty: any.
+/// @throws Error  Fault::memory if the file is larger than `most_bytes`.
+[[nodiscard]] std::vector<std::byte> read_file(const std::string& name, const std::string& path,
+                                               std::uint64_t most_bytes, const std::string& folder = {});
 
-/// Unpacks at most `most` bytes of a zlib or gzip stream. @return fewer bytes if the stream ends before.
+/// @throws Error  if no zlib stream of `packed` bytes can hold so many.
+void check_ratio(const std::string& name, std::size_t packed, std::size_t needed);
+
+/// Unpacks at most `most` bytes of a zlib stream, or of a gzip stream, which may have several members one
+/// after the other (RFC 1952, 2.2). @return fewer bytes if the stream ends before.
 [[nodiscard]] std::vector<std::byte> inflate(const std::string& name, std::span<const std::byte> packed,
                                              std::size_t most);
 
-[[nodiscard]] Volume read_metaimage(const std::string& path);
-[[nodiscard]] Volume read_nifti(const std::string& path);
+[[nodiscard]] Volume read_metaimage(const std::string& path, const LoadOptions& options);
+[[nodiscard]] Volume read_nifti(const std::string& path, const LoadOptions& options);
 
 }  // namespace cairn::scenes::volume

@@ -33,9 +33,9 @@ bool is_volume_file(const std::string& path) {
     return !path.starts_with("builtin:") && (is_metaimage(path) || is_nifti(path));
 }
 
-Volume load_volume(const std::string& path) {
-    if (is_metaimage(path)) return volume::read_metaimage(path);
-    if (is_nifti(path)) return volume::read_nifti(path);
+Volume load_volume(const std::string& path, const LoadOptions& options) {
+    if (is_metaimage(path)) return volume::read_metaimage(path, options);
+    if (is_nifti(path)) return volume::read_nifti(path, options);
     volume::fail(path, "its name is that of no volume format", "volumes end in .mha, .mhd, .nii or .nii.gz");
 }
 

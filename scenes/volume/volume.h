@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 
+#include "scenes/load.h"
 #include "scenes/snapshot.h"
 
 namespace cairn::scenes {
@@ -22,7 +23,7 @@ struct Volume {
     double low = 0.0;                    ///< the file's value that sample 0 stands for
     double high = 1.0;                   ///< the file's value that sample 65535 stands for
     std::vector<std::uint16_t> samples;  ///< one per cell; x runs fastest, then y
-    std::vector<std::string> warnings;   ///< statements of the file that were not followed
+    std::vector<Warning> warnings;       ///< statements of the file that were not followed
 
     /// Bounds of the cells, which reach half a spacing past the outer samples.
     [[nodiscard]] Bounds bounds() const;
@@ -36,9 +37,9 @@ struct Volume {
 /// read. 8-bit values keep their range [0, 255]; other values are scaled by the range of the data. Axes that
 /// are not along the world's are turned to the nearest ones, with a warning.
 ///
-/// Memory is allocated as data is read, so a header alone cannot make the reader allocate more than the file
-/// can hold.
-/// @throws Error  Fault::input, naming the file, what is wrong and a way out.
-[[nodiscard]] Volume load_volume(const std::string& path);
+/// Nothing is allocated that the file's own bytes cannot mean, nor more than LoadOptions::memory_bytes.
+/// @throws Error  Fault::input, naming the file, what is wrong and a way out; Fault::memory if the samples
+///                would take more than LoadOptions::memory_bytes.
+[[nodiscard]] Volume load_volume(const std::string& path, const LoadOptions& options = {});
 
 }  // namespace cairn::scenes

@@ -1,5 +1,5 @@
 // One thread is one vertex of a surface that moves: morph targets, skin, the node's place, and the lattice,
-// as scenes/deform.cpp, scenes/transform.h and Grid::lattice_from_world do, operation by operation, so that
+// as scenes/deform.cpp, scenes/snapshot.h and Grid::lattice_from_world do, operation by operation, so that
 // positions have the same bits. `precise` keeps the driver from fusing operations and from changing their
 // order. Positions need only sums and products of doubles, which drivers round alike. Normals need quotients
 // and roots too, and may differ in the last step.
@@ -160,8 +160,7 @@ void main() {
     } else {
         place = affine(item.matrix);
     }
-    dvec3 world = transformed(place, dvec3(morphed_position(item, vertex, uintBitsToFloat(at_rest.xyz))));
-    if (is_skinned) world = dvec3(vec3(world));  // a snapshot holds positions as floats
+    const dvec3 world = transformed(place, dvec3(morphed_position(item, vertex, uintBitsToFloat(at_rest.xyz))));
     const ivec3 position = lattice_position(world);
     positions[3u * thread] = position.x;
     positions[3u * thread + 1u] = position.y;

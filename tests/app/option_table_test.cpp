@@ -69,6 +69,13 @@ std::string RandomTexts::of(const std::string& option) {
          }},
         {"--scene-index", [&] { return whole(0, 9); }},
         {"--trust-paths", [] { return std::string(); }},
+        {"--strict", [] { return std::string(); }},
+        {"--memory", [&] { return whole(1, 1 << 24); }},
+        {"--limit",
+         [&] {
+             return coin() ? "elements=" + whole(0, 999999)
+                           : "image-bytes=" + whole(0, 99999) + ",json-values=" + whole(0, 99999);
+         }},
         {"--resolution",
          [&] {
              return coin() ? whole(1, 65536) : whole(1, 9) + "," + whole(10, 20) + "," + whole(1, 65536);
@@ -205,7 +212,7 @@ void expect_round_trips(const OptionTable<Options>& table) {
 
 TEST(OptionTable, MomentsArePrintedAsTheyAreRead) {
     expect_round_trips(app::moment_table());
-    expect_round_trips(app::trust_table());
+    expect_round_trips(app::load_table());
 }
 
 TEST(OptionTable, GridsArePrintedAsTheyAreRead) {

@@ -181,6 +181,39 @@ TEST(AppRender, ResolutionIsBounded) {
     EXPECT_LT(bricks("32"), bricks("2048"));
 }
 
+TEST(AppRender, WhatIsNotAsAskedForIsTold) {
+    const ScratchFolder folder;
+    const auto told = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> run = {"render", "builtin:cornell",   "--size", "16x12",
+                                        "-o",     folder.file("a.png")};
+        run.insert(run.end(), options.begin(), options.end());
+        const Answer answer = cairn(run);
+        EXPECT_EQ(answer.code, 0) << answer;
+        run.emplace_back("--quiet");
+        EXPECT_EQ(cairn(run).err, "");
+        return answer.err;
+    };
+    const auto expect_told = [&](const std::vector<std::string>& options, const std::string& part) {
+        const std::string text = told(options);
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+        EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    };
+    expect_told({"--max-resolution", "1000"}, "at most 256 voxels across");
+    expect_told({"--max-resolution", "1000", "--tree-n", "2", "--brick-m", "8"}, "at most 512 voxels across");
+    expect_told({"--shadow", "soft"}, "the light has no extent");
+    expect_told({"--shadow", "soft", "--light", "0,2,0"}, "the light has no extent");
+    expect_told({"--cones"}, "the light has no extent");
+    expect_told({"--shadow", "none", "--cones"}, "there are no shadows");
+    for (const std::vector<std::string>& met : {std::vector<std::string>{},
+                                                {"--max-resolution", "1024"},
+                                                {"--shadow", "soft", "--light", "0,2,0,0.3"},
+                                                {"--cones", "--light", "0,2,0,0.3"}})
+        EXPECT_EQ(told(met), "");
+    const Json figures = cairn_json({"render", "builtin:cornell", "--size", "16x12", "--max-resolution",
+                                     "1000", "-o", folder.file("a.png")});
+    EXPECT_EQ(figures.value("finest_resolution", 0), 256) << figures;
+}
+
 /// Output of a run of `cairn render`.
 struct Rendered {
     Json figures;

@@ -141,7 +141,17 @@ TEST(AppShadow, WrongOptionsAreRefusedBeforeAnythingIsWritten) {
         {"--method", "soft-shadow-map", "--light", "1,2,3", "--receivers", "0"},
         {"--method", "soft-shadow-map", "--light", "1,2,3", "--light-size", "1,1"},
         {"--method", "soft-shadow-map", "--light", "1,2,3", "--light-size", "1,1", "--receivers", "0",
-         "--rays", "4"}};
+         "--rays", "4"},
+        // Options that would change nothing.
+        {"--method", "voxel", "--rays", "4"},
+        {"--method", "voxel", "--light", "1,2,3", "--rays", "4"},
+        {"--method", "voxel", "--light", "1,2,3", "--cones"},
+        {"--method", "voxel", "--truth-samples", "100"},
+        {"--method", "pyramid", "--truth-cache", folder.file("cache")},
+        {"--method", "pyramid", "--pixel-error", "2"},
+        {"--method", "pyramid", "--brick-pool", "64"},
+        {"--method", "embree", "--max-resolution", "64"},
+        {"--method", "embree", "--brick-cache", "64"}};
     for (const Arguments& options : wrong) {
         const Answer answer = cairn(joined({"shadow", "builtin:knot", "-o", folder.file("o.png")}, options));
         EXPECT_EQ(answer.code, 2) << answer;

@@ -1,20 +1,14 @@
 // The command's answers to right and wrong usage, to bad files, bad places and bad drivers.
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "tests/support/command.h"
 #include "tests/support/gltf_file.h"
@@ -301,6 +295,21 @@ TEST(AppOutput, AFullDiskIsNoSuccess) {
     EXPECT_EQ(folder.file_count(), 1U) << "the link alone stays";
 }
 
+TEST(AppOutput, TwoOutputsThatAreOneFileAreRefused) {
+    const ScratchFolder folder;
+    std::filesystem::create_symlink("a.npy", folder.file("b.npy"));
+    const std::string roundabout = (folder.path() / "." / "a.npy").string();
+    for (const std::string& other : {folder.file("a.npy"), folder.file("b.npy"), roundabout}) {
+        expect_error(
+            cairn({"voxelize", "builtin:cornell", "-r", "16", "-o", folder.file("a.npy"), "--json", other}),
+            2, "would both write it");
+    }
+    EXPECT_EQ(folder.file_count(), 1U);
+    for (const char* stream : {"-", "/dev/null"})
+        EXPECT_EQ(
+            cairn({"voxelize", "builtin:cornell", "-r", "16", "-o", "/dev/null", "--json", stream}).code, 0);
+}
+
 TEST(AppOutput, AnArrayThatTheDiskCannotHoldIsRefusedBeforeTheWork) {
     const ScratchFolder folder;
     const Answer answer =
@@ -310,62 +319,6 @@ TEST(AppOutput, AnArrayThatTheDiskCannotHoldIsRefusedBeforeTheWork) {
     expect_contains(answer.err, ".vdb");
     EXPECT_EQ(folder.file_count(), 0U);
 }
-
-/// Starts `cairn ARGUMENTS...`, sends it a signal once its output has begun, and waits for its end.
-struct Interrupted {
-    Interrupted(const ScratchFolder& folder, Arguments arguments, int signal,
-                std::chrono::milliseconds after) {
-        arguments.insert(arguments.begin(), CAIRN_COMMAND);
-        std::vector<char*> argv;
-        for (std::string& argument : arguments)
-            argv.push_back(argument.data());
-        argv.push_back(nullptr);
-        const std::string err = folder.file("err");
-        const pid_t child = fork();
-        if (child == 0) {
-            const int file = open(err.c_str(), O_WRONLY | O_CREAT, 0600);
-            dup2(file, STDERR_FILENO);
-            execv(CAIRN_COMMAND, argv.data());
-            _exit(127);
-        }
-        const auto has_begun = [&] {
-            return std::ranges::any_of(
-                std::filesystem::directory_iterator(folder.path()),
-                [](const auto& entry) { return entry.path().string().find(".part-") != std::string::npos; });
-        };
-        // The command checks first that it can write, and removes that file. Wait for a file that stays.
-        int seen = 0;
-        for (int i = 0; i < 2000 && seen < 3; ++i) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-            seen = has_begun() ? seen + 1 : 0;
-        }
-        EXPECT_GE(seen, 3) << "it never began to write";
-        std::this_thread::sleep_for(after);
-        kill(child, signal);
-        waitpid(child, &status, 0);
-        message = read_text(err);
-        std::filesystem::remove(err);
-    }
-    int status = 0;
-    std::string message;
-};
-
-class AppInterrupt : public ::testing::TestWithParam<int> {};
-
-TEST_P(AppInterrupt, EndsWithCode130OneLineAndNoFile) {
-    for (const int after_ms : {0, 400}) {
-        const ScratchFolder folder;
-        const Interrupted run(folder, {"voxelize", "builtin:tree", "-r", "1024", "-o", folder.file("a.npy")},
-                              GetParam(), std::chrono::milliseconds(after_ms));
-        ASSERT_TRUE(WIFEXITED(run.status)) << "killed by signal " << WTERMSIG(run.status);
-        EXPECT_EQ(WEXITSTATUS(run.status), 130) << run.message;
-        EXPECT_EQ(run.message, "error: interrupted; nothing was left half written\n");
-        EXPECT_EQ(folder.file_count(), 0U);
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Signals, AppInterrupt, ::testing::Values(SIGINT, SIGTERM),
-                         [](const auto& signal) { return signal.param == SIGINT ? "CtrlC" : "Terminate"; });
 
 /// The environment of a Mesa that offers only OpenGL 3.3, even if another vendor's driver is installed beside
 /// it.

@@ -137,7 +137,7 @@ TEST_P(EveryBuiltin, ComesBackFromAFileUnchanged) {
     write_glb(scene_, folder.file("scene.glb"));
     const Scene back = load(folder.file("scene.glb"));
     EXPECT_EQ(hash_of(back), hash_of(scene_));
-    EXPECT_TRUE(back.warnings.empty()) << back.warnings.front();
+    EXPECT_TRUE(back.warnings.empty()) << back.warnings.front().text;
 
     const Snapshot here = take_snapshot(scene_);
     const Snapshot there = take_snapshot(back);
@@ -258,6 +258,7 @@ Scene make_medley() {
         primitive.indices = {0, 1};
     }
     thin.primitives[0].topology = Topology::points;
+    thin.primitives[0].material = 1;
     thin.primitives[1].topology = Topology::lines;
     thin.primitives[2].indices.clear();  // draws nothing
     scene.meshes.push_back(std::move(thin));
@@ -280,7 +281,11 @@ Scene make_medley() {
     Node hollow;
     hollow.mesh = 2;
     scene.nodes.push_back(std::move(hollow));
-    for (int node = 1; node < 4; ++node) {
+    Node hidden;
+    hidden.mesh = 0;
+    hidden.visible = false;
+    scene.nodes.push_back(std::move(hidden));
+    for (int node = 1; node < 5; ++node) {
         scene.scenes[0].nodes.push_back(node);
     }
     scene.materials[1].alpha_cutoff = 0.25F;
@@ -301,6 +306,7 @@ TEST(WriteGlb, KeepsPointsLinesMatricesAndInstances) {
     EXPECT_EQ(there.point_count, 2U);
     EXPECT_EQ(there.bounds.low, here.bounds.low);
     EXPECT_EQ(there.bounds.high, here.bounds.high);
+    EXPECT_FALSE(back.nodes.at(4).visible);
     EXPECT_EQ(back.materials[0].alpha_mode, AlphaMode::blend);
     EXPECT_EQ(back.materials[1].alpha_cutoff, 0.25F);
     ASSERT_EQ(back.textures.size(), 1U);

@@ -1,6 +1,7 @@
 // Animation, morph targets and skins, with files that the tests write.
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -177,10 +178,11 @@ TEST(Skin, JointsMoveTheVerticesAndTheNodeDoesNot) {
     const Snapshot snapshot = take_snapshot(scene);
     ASSERT_EQ(snapshot.items.size(), 1U);
     EXPECT_EQ(snapshot.items[0].world_from_mesh, glm::dmat4(1.0));
-    const auto positions = snapshot.items[0].positions;
-    EXPECT_EQ(positions[0], glm::vec3(11, 0, 0));
-    EXPECT_EQ(positions[1], glm::vec3(10, 10, 0));  // (1, 0, 0) is moved to the joint's origin
-    EXPECT_EQ(positions[2], glm::vec3(10.5F, 5, 0));
+    const Item& item = snapshot.items[0];
+    ASSERT_EQ(item.vertex_count(), 3U);
+    EXPECT_EQ(item.world(0), glm::dvec3(11, 0, 0));
+    EXPECT_EQ(item.world(1), glm::dvec3(10, 10, 0));  // (1, 0, 0) is moved to the joint's origin
+    EXPECT_EQ(item.world(2), glm::dvec3(10.5, 5, 0));
     EXPECT_EQ(snapshot.items[0].normals[1], glm::vec3(1, 0, 0));
 }
 
@@ -193,9 +195,45 @@ TEST(Skin, WeightsAreNormalizedAndBadOnesCountAsZero) {
     EXPECT_EQ(skin[2].weights, glm::vec4(0.5F, 0.5F, 0, 0));
 }
 
+TEST(Skin, TheSumOfWeightsIsExactlyOne) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> weight(0.0F, 1.0F);
+    for (int turn = 0; turn < 200; ++turn) {
+        std::vector<float> given(12);
+        for (float& each : given)
+            each = random() % 3 == 0 ? weight(random) * 1e-7F : weight(random);
+        const Scene scene = load_glb(skinned(given));
+        for (const SkinWeights& vertex : scene.meshes.at(0).primitives.at(0).skin) {
+            double sum = 0.0;
+            for (int c = 0; c < 4; ++c) {
+                EXPECT_GE(vertex.weights[c], 0.0F);
+                sum += double(vertex.weights[c]);
+            }
+            EXPECT_EQ(sum, 1.0);
+        }
+    }
+}
+
+TEST(Skin, FarFromTheOriginVerticesKeepTheirPlaces) {
+    GltfFile file = skinned({0.3F, 0.7F, 0, 0, 1.0F / 3, 2.0F / 3, 0, 0, 0.123F, 0.877F, 0, 0});
+    // Both joints are the same place, so that the mesh is moved as a whole.
+    file.json["nodes"][2] = Json::object();
+    file.json["skins"][0].erase("inverseBindMatrices");
+    for (const double far : {100.0, 6'378'000.0, 1e9}) {
+        file.json["nodes"][1]["translation"] = {far, 0.25, -far};
+        const Scene scene = load_glb(file);
+        const Snapshot snapshot = take_snapshot(scene);
+        for (std::size_t vertex = 0; vertex < 3; ++vertex) {
+            const glm::dvec3 difference =
+                snapshot.items[0].world(vertex) - (glm::dvec3(1, 0, 0) + glm::dvec3(far, 0.25, -far));
+            EXPECT_LE(glm::length(difference), far * 1e-15) << far;
+        }
+    }
+}
+
 TEST(Skin, AVertexWithoutWeightsFollowsTheFirstJoint) {
     const Scene scene = load_glb(skinned(std::vector<float>(12, 0.0F)));
-    EXPECT_EQ(take_snapshot(scene).items[0].positions[2], glm::vec3(11, 0, 0));
+    EXPECT_EQ(take_snapshot(scene).items[0].world(2), glm::dvec3(11, 0, 0));
 }
 
 TEST(Skin, FurtherSetsOfInfluencesCount) {
@@ -206,7 +244,7 @@ TEST(Skin, FurtherSetsOfInfluencesCount) {
     attributes["WEIGHTS_1"] =
         file.add_accessor(std::vector<std::uint8_t>{255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC4", true);
     const Scene scene = load_glb(file);
-    EXPECT_EQ(take_snapshot(scene).items[0].positions[0], glm::vec3(10.5F, 5, 0));
+    EXPECT_EQ(take_snapshot(scene).items[0].world(0), glm::dvec3(10.5, 5, 0));
 }
 
 TEST(Skin, AnimatedJointsCarryTheMesh) {
@@ -215,7 +253,7 @@ TEST(Skin, AnimatedJointsCarryTheMesh) {
     animate(file, 1, "translation", "LINEAR", times,
             file.add_accessor(std::vector<float>{0, 0, 0, 0, 0, 8}, "VEC3"));
     const Scene scene = load_glb(file);
-    EXPECT_EQ(take_snapshot(scene, {0.5, 0, std::nullopt}).items[0].positions[0], glm::vec3(1, 0, 4));
+    EXPECT_EQ(take_snapshot(scene, {0.5, 0, std::nullopt}).items[0].world(0), glm::dvec3(1, 0, 4));
 }
 
 }  // namespace

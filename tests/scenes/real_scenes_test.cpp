@@ -79,8 +79,8 @@ TEST_P(Manifest, CountsEqualOurs) {
     EXPECT_EQ(snapshot.triangle_count, GetParam().scene_triangles);
     EXPECT_EQ(scene.nodes.size(), GetParam().nodes);
     EXPECT_FALSE(snapshot.bounds.empty());
-    for (const std::string& warning : scene.warnings)
-        ADD_FAILURE() << "unexpected warning: " << warning;
+    for (const Warning& warning : scene.warnings)
+        ADD_FAILURE() << "unexpected warning: " << warning.text;
 }
 
 std::string test_name(const testing::TestParamInfo<Row>& info) {
@@ -132,7 +132,7 @@ TEST(Data, EveryModelOfTheAssetGeneratorLoads) {
             const Scene scene = load((data / file).string());
             const Snapshot snapshot = take_snapshot(scene);
             EXPECT_GT(snapshot.triangle_count + snapshot.line_count + snapshot.point_count, 0U) << file;
-            EXPECT_TRUE(scene.warnings.empty()) << file << ": " << scene.warnings.front();
+            EXPECT_TRUE(scene.warnings.empty()) << file << ": " << scene.warnings.front().text;
         }
 }
 

@@ -225,8 +225,10 @@ TEST_F(VolumeFiles, DamagedOnesAreRefusedWithTheReason) {
     expect_refused("a.mha", metaimage("-1 2 2", "MET_UCHAR", ""), "DimSize -1");
     expect_refused("a.mha", metaimage("2 2", "MET_UCHAR", ""), "DimSize is not 3 numbers");
     expect_refused("a.mha", metaimage("nan 2 2", "MET_UCHAR", ""), "DimSize nan");
-    expect_refused("a.mha", metaimage("1000000 1000000 1000000", "MET_UCHAR", ""), "too many");
-    expect_refused("a.mha", metaimage("900 900 900", "MET_DOUBLE", zlib_of("x"), "CompressedData = True\n"),
+    expect_refused("a.mha", metaimage("1048577 1 1", "MET_UCHAR", ""), "1048577 samples along axis i");
+    expect_refused("a.mha", metaimage("90 90 90", "MET_DOUBLE", zlib_of("x"), "CompressedData = True\n"),
+                   "cannot hold so many");
+    expect_refused("a.mha", metaimage("9 9 9", "MET_DOUBLE", zlib_of("x"), "CompressedData = True\n"),
                    "holds 1");
     expect_refused("a.mha", metaimage("2 1 1", "MET_UCHAR", "zz", "CompressedData = True\n"),
                    "compressed data is broken");
@@ -275,7 +277,8 @@ TEST_F(VolumeFiles, AnyDamageEndsInAnErrorOrAVolume) {
                 << "seed 31, turn " << turn;
             ++read_anyway;
         } catch (const Error& error) {
-            EXPECT_EQ(error.fault(), Fault::input) << error.what() << ", seed 31, turn " << turn;
+            const bool expected = error.fault() == Fault::input || error.fault() == Fault::memory;
+            EXPECT_TRUE(expected) << error.what() << ", seed 31, turn " << turn;
         }
     }
     EXPECT_GT(read_anyway, 100);

@@ -10,7 +10,6 @@
 #include "renderer/renderer.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
-#include "scenes/transform.h"
 #include "tests/support/test_scenes.h"
 
 /// Rays against triangles, one by one, in double: the truth for rasterized meshes.
@@ -27,8 +26,7 @@ inline std::vector<WorldTriangle> world_triangles(const scenes::Snapshot& snapsh
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
             WorldTriangle& triangle = all.emplace_back();
             for (std::size_t corner = 0; corner < 3; ++corner)
-                triangle.corners[corner] =
-                    scenes::transform_point(item.world_from_mesh, item.positions[indices[i + corner]]);
+                triangle.corners[corner] = item.world(indices[i + corner]);
         }
     }
     return all;

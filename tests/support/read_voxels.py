@@ -196,7 +196,8 @@ def read_vox(path, grid):
                 # The anchor of a model is its middle, rounded down.
                 v = [(x, y, z)[axis] - side[axis] // 2 + offset[axis] for axis in range(3)]
                 # z is up there, y here.
-                i, j, k = v[0] + dims[0] // 2, v[2], dims[2] - 1 - (v[1] + dims[2] // 2)
+                sunk = dims[1] // 2 if dims[1] > 1000 else 0
+                i, j, k = v[0] + dims[0] // 2, v[2] + sunk, dims[2] - 1 - (v[1] + dims[2] // 2)
                 world = [origin[axis] + size * ((i, j, k)[axis] + 0.5) for axis in range(3)]
                 voxel = grid.voxel_at(world)
                 if voxel in voxels:

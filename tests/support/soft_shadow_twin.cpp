@@ -17,8 +17,7 @@ LightTriangles in_light_space(const scenes::Snapshot& snapshot, const optics::Li
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
             std::array<dvec3, 3>& triangle = triangles.emplace_back();
             for (std::size_t k = 0; k < 3; ++k)
-                triangle[k] = dvec3(from_world * item.world_from_mesh *
-                                    glm::dvec4(item.positions[indices[i + k]], 1.0));
+                triangle[k] = dvec3(from_world * glm::dvec4(item.world(indices[i + k]), 1.0));
         }
     }
     return triangles;

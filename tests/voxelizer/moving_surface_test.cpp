@@ -1,6 +1,8 @@
 // Surfaces moved on the GPU hold the bits of snapshots taken on the CPU, and cost no memory per frame.
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -71,6 +73,64 @@ TEST_F(Moving, FarFromTheOriginTheOrderOfOperationsHolds) {
 }
 
 /// Points halfway between two lattice points, on either side of 0.
+/// A tube of 1.75 m that two joints carry, and the same tube that its node carries.
+scenes::Scene carried_tube(double far, bool by_skin) {
+    constexpr int rings = 40;
+    constexpr int sides = 24;
+    scenes::Scene scene;
+    scenes::Primitive& tube = scene.meshes.emplace_back().primitives.emplace_back();
+    for (int ring = 0; ring <= rings; ++ring) {
+        for (int side = 0; side < sides; ++side) {
+            const double angle = 2.0 * std::numbers::pi * side / sides;
+            tube.positions.emplace_back(0.3 * std::cos(angle), 1.75 * ring / rings, 0.3 * std::sin(angle));
+            if (!by_skin) continue;
+            const float upper = std::round(float(ring) / rings * 0x1p24F) * 0x1p-24F;
+            tube.skin.push_back({{0, 1, 0, 0}, {1.0F - upper, upper, 0.0F, 0.0F}});
+        }
+    }
+    for (std::uint32_t ring = 0; ring < rings; ++ring)
+        for (std::uint32_t side = 0; side < sides; ++side) {
+            const std::uint32_t next = (side + 1) % sides;
+            const std::uint32_t low = ring * sides;
+            tube.indices.insert(tube.indices.end(), {low + side, low + next, low + sides + side});
+            tube.indices.insert(tube.indices.end(), {low + next, low + sides + next, low + sides + side});
+        }
+    const glm::dvec3 place(far, 0.5 * far, -far);
+    scenes::Node& body = scene.nodes.emplace_back();
+    body.mesh = 0;
+    scene.scenes.push_back({"all", {0}});
+    if (!by_skin) {
+        body.trs.translation = place;
+        return scene;
+    }
+    body.skin = 0;
+    for (int joint = 1; joint <= 2; ++joint) {
+        scene.nodes.emplace_back().trs.translation = place;
+        scene.scenes[0].nodes.push_back(joint);
+    }
+    scene.skins.push_back({{1, 2}, {glm::dmat4(1.0), glm::dmat4(1.0)}});
+    return scene;
+}
+
+TEST_F(Moving, ASkinFarFromTheOriginCarriesWhatANodeWould) {
+    for (const double far : {1.0, 100.0, 100'000.0, 6'378'000.0}) {
+        const scenes::Scene by_skin = carried_tube(far, true);
+        const scenes::Scene by_node = carried_tube(far, false);
+        const scenes::Snapshot truth = scenes::take_snapshot(by_node);
+        const Grid grid = grid_around(truth.bounds, 256);
+        const Surface expected = build_surface(by_node, truth, grid);
+        const Surface on_cpu = build_surface(by_skin, scenes::take_snapshot(by_skin), grid);
+        ASSERT_EQ(on_cpu.chunks.size(), 1U);
+        EXPECT_EQ(on_cpu.chunks[0].positions, expected.chunks[0].positions) << far;
+        const BitGrid voxels = reference::exact_voxels(expected, whole(grid));
+        EXPECT_GT(voxels.count(), 50'000U);
+        EXPECT_TRUE(reference::exact_voxels(on_cpu, whole(grid)) == voxels) << far;
+        const MovingSurface moving(by_skin, {}, grid);
+        ASSERT_FALSE(moving.was_on_cpu());
+        EXPECT_TRUE(same_vertices(moving.surface(), expected)) << far;
+    }
+}
+
 TEST_F(Moving, HalvesAreRoundedUp) {
     const Grid grid = unit_grid(16);
     std::vector<glm::vec3> positions;

@@ -9,6 +9,7 @@
 #include "shaders/interop/grid.h"
 #include "shaders/interop/surface.h"
 #include "tests/support/lattice_surface.h"
+#include "tests/support/masked_scene.h"
 #include "tests/support/scratch_folder.h"
 #include "voxelizer/files/write_npy.h"
 
@@ -212,6 +213,36 @@ TEST(BuildSurface, MaterialsThatHideEverythingLeaveNothing) {
     EXPECT_EQ(mesh.surface(unit_grid(16)).triangle_count, 0U);
     mesh.scene.materials[0].alpha_mode = scenes::AlphaMode::blend;
     EXPECT_EQ(mesh.surface(unit_grid(16)).triangle_count, 1U) << "blended surfaces count";
+}
+
+TEST(BuildSurface, MaterialsThatShareAPictureShareTheCountsOfTheirMasks) {
+    constexpr std::size_t picture = 64;
+    constexpr std::size_t counts = 81;
+    const auto texels_with = [](const std::vector<float>& cutoffs, std::uint64_t most_bytes) {
+        MaskedScene masked(8, 8, std::vector<std::uint8_t>(picture, 128), scenes::Wrap::repeat,
+                           scenes::Wrap::repeat);
+        masked.add({glm::vec3(0.1F), glm::vec3(0.9F, 0.1F, 0.1F), glm::vec3(0.1F, 0.9F, 0.1F)}, {});
+        std::vector<scenes::Primitive> primitives(cutoffs.size(), masked.primitive);
+        scenes::Snapshot snapshot;
+        for (std::size_t i = 0; i < cutoffs.size(); ++i) {
+            if (i > 0) {
+                scenes::Material& material = masked.scene.materials.emplace_back();
+                material.texture = 0;
+                material.alpha_mode = scenes::AlphaMode::mask;
+            }
+            masked.scene.materials[i].alpha_cutoff = cutoffs[i];
+            primitives[i].material = int(i);
+            snapshot.items.push_back({&primitives[i], primitives[i].positions, {}, glm::dmat4(1.0)});
+        }
+        masked.scene.placing.bytes = most_bytes;
+        return build_surface(masked.scene, snapshot, {glm::dvec3(0.0), 1.0 / 8, glm::ivec3(8)}).texels.size();
+    };
+    EXPECT_EQ(texels_with({0.5F}, 1U << 20U), picture + counts);
+    // 0.5 and 0.5004 lie between the same two of 256 steps, 0.7 lies elsewhere.
+    EXPECT_EQ(texels_with({0.5F, 0.5F, 0.5004F}, 1U << 20U), picture + counts);
+    EXPECT_EQ(texels_with({0.5F, 0.7F, 0.5F, 0.7F}, 1U << 20U), picture + 2 * counts);
+    EXPECT_EQ(texels_with({0.5F, 0.7F}, 4 * (picture + 2 * counts)), picture + 2 * counts);
+    EXPECT_THROW((void)texels_with({0.5F, 0.7F}, 4 * (picture + 2 * counts) - 1), Error);
 }
 
 TEST(BitGrid, KeepsTheBitsPastARowAtZero) {

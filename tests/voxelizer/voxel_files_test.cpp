@@ -1,16 +1,13 @@
 // Voxel files, read back by other readers (read_voxels.py).
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
-#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/os.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "base/output_file.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
@@ -137,41 +134,6 @@ Voxels random_voxels(const glm::ivec3& resolution, std::uint32_t seed, bool with
     return voxels;
 }
 
-std::string numbered_bytes(std::size_t count) {
-    std::string bytes;
-    for (std::size_t i = 0; i < count; ++i)
-        bytes += char(1 + i % 200);
-    return bytes;
-}
-
-TEST(OutputFileZeros, AreZerosInAFileAndInAPipe) {
-    const ScratchFolder folder;
-    const std::string data = numbered_bytes(1000);
-    std::string expected;
-    const auto write = [&](OutputFile& file) {
-        expected.clear();
-        for (const std::size_t zeros :
-             {std::size_t(0), std::size_t(7), std::size_t(65535), std::size_t(300000)}) {
-            file.write(data.data(), data.size());
-            file.write_zeros(zeros / 2);
-            file.write_zeros(zeros - zeros / 2);
-            expected += data + std::string(zeros, '\0');
-        }
-        file.commit();
-    };
-    OutputFile file(folder.file("a"));
-    write(file);
-    EXPECT_TRUE(read_text(folder.file("a")) == expected);
-
-    ASSERT_EQ(std::system(("mkfifo " + folder.file("pipe")).c_str()), 0);
-    ASSERT_EQ(std::system(fmt::format("cat {} > {} &", folder.file("pipe"), folder.file("b")).c_str()), 0);
-    OutputFile pipe(folder.file("pipe"));
-    write(pipe);
-    for (int i = 0; i < 100 && read_text(folder.file("b")).size() < expected.size(); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    EXPECT_TRUE(read_text(folder.file("b")) == expected);
-}
-
 class VoxelFiles : public ::testing::TestWithParam<std::string> {};
 
 std::string name_of_ending(const ::testing::TestParamInfo<std::string>& info) {
@@ -265,6 +227,27 @@ TEST(VoxWriter, GoxelSeesTheSameScene) {
     ASSERT_TRUE(code == 0 && std::filesystem::exists(folder.file("goxel.txt")))
         << read_text(folder.file("answer"));
     expect_reads(folder.file("goxel.txt"), folder, 0.5001);
+}
+
+TEST(VoxWriter, AGridPastTheEditorsRangeLiesAroundTheMiddleAndIsToldOf) {
+    for (const int height : {1000, 1001, 2000, 2048}) {
+        Voxels voxels;
+        voxels.grid = {glm::dvec3(0.0), 1.0, glm::ivec3(3, height, 5)};
+        voxels.bits = BitGrid(voxels.grid.resolution);
+        for (const int y : {0, 23, 24, height / 2, 2023, 2024, height - 1})
+            if (y < height) voxels.bits.set({1, y, 2});
+        const ScratchFolder folder;
+        write_expected(voxels, folder.file("expected"));
+        const std::string path = folder.file("voxels.vox");
+        const std::unique_ptr<VoxelWriter> writer = make_voxel_writer(path, voxels.grid);
+        for_each_tile(voxels, [&](const VoxelTile& tile) { writer->add(tile); });
+        writer->finish();
+        expect_reads(path, folder, 0.0);
+        // Of 2048 voxels around the middle, the lowest 24 and the highest 24 are outside.
+        const std::string expected = height == 2048 ? "4 voxels lie outside of -1000 to 999" : "";
+        EXPECT_EQ(writer->warning().find(expected) == std::string::npos, false) << writer->warning();
+        EXPECT_EQ(writer->warning().empty(), height <= 2000) << writer->warning();
+    }
 }
 
 TEST(VoxelColours, AreReadBackFromVdb) {

@@ -44,6 +44,8 @@ public:
     /// @throws Error as OutputFile does, or Fault::memory.
     virtual void add(const VoxelTile& tile) = 0;
     virtual void finish() = 0;
+    /// What programs that read the file will not show of it; empty: they show all. After finish().
+    [[nodiscard]] virtual std::string warning() const { return {}; }
 
 protected:
     VoxelWriter() = default;

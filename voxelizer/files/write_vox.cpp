@@ -23,6 +23,8 @@ namespace {
 
 constexpr int model_side = 256;
 static_assert(model_side % VOXEL_TILE_SIDE == 0, "a tile may lie in two models");
+/// MagicaVoxel shows places from minus this to below it, along each axis.
+constexpr int editor_reach = 1000;
 constexpr std::uint64_t most_bytes = (1ULL << 31) - 1;
 constexpr std::uint64_t model_bytes = 12 + 12 + 12 + 4;  // of a model without voxels: chunks SIZE and XYZI
 
@@ -75,11 +77,16 @@ private:
 class VoxWriter final : public VoxelWriter {
 public:
     VoxWriter(const std::filesystem::path& path, const Grid& grid)
-        : path_(path), file_(path), side_(path), grid_(grid) {}
+        : path_(path),
+          file_(path),
+          side_(path),
+          grid_(grid),
+          sunk_(grid.resolution.y > editor_reach ? grid.resolution.y / 2 : 0) {}
 
     [[nodiscard]] bool wants_attributes() const override { return true; }
     void add(const VoxelTile& tile) override;
     void finish() override;
+    [[nodiscard]] std::string warning() const override;
 
 private:
     Model& model_of(const VoxelTile& tile);
@@ -92,9 +99,11 @@ private:
     OutputFile file_;
     SideFile side_;
     Grid grid_;
+    int sunk_;  ///< how far below the editor's ground the grid begins
     ColorPalette palette_;
     std::map<std::tuple<int, int, int>, Model> models_;
-    std::uint64_t bytes_ = 0;  ///< bytes of all models
+    std::uint64_t bytes_ = 0;    ///< bytes of all models
+    std::uint64_t outside_ = 0;  ///< voxels that MagicaVoxel does not show
 };
 
 Model& VoxWriter::model_of(const VoxelTile& tile) {
@@ -106,7 +115,7 @@ Model& VoxWriter::model_of(const VoxelTile& tile) {
     const glm::ivec3 size = glm::min(grid_.resolution - low, glm::ivec3(model_side));
     model.size = {size.x, size.z, size.y};
     model.low = {low.x - grid_.resolution.x / 2, grid_.resolution.z - low.z - size.z - grid_.resolution.z / 2,
-                 low.y};
+                 low.y - sunk_};
     bytes_ += model_bytes;
     return model;
 }
@@ -126,7 +135,13 @@ void VoxWriter::add(const VoxelTile& tile) {
         const glm::u8vec3 color = colors.empty() ? light_grey : optics::srgb8_from_linear(colors[number]);
         palette_.add(color);
         const glm::ivec3 p = in_model + v;
-        voxels.push_back({{std::uint8_t(p.x), std::uint8_t(model.size.y - 1 - p.z), std::uint8_t(p.y)},
+        const glm::ivec3 place(p.x, model.size.y - 1 - p.z, p.y);
+        const glm::ivec3 in_scene = model.low + place;
+        outside_ += glm::any(glm::lessThan(in_scene, glm::ivec3(-editor_reach))) ||
+                            glm::any(glm::greaterThanEqual(in_scene, glm::ivec3(editor_reach)))
+                        ? 1
+                        : 0;
+        voxels.push_back({{std::uint8_t(place.x), std::uint8_t(place.y), std::uint8_t(place.z)},
                           {color.r, color.g, color.b}});
     });
     bytes_ += 4 * count;
@@ -137,6 +152,13 @@ void VoxWriter::add(const VoxelTile& tile) {
     model.pieces.push_back(
         {side_.write(voxels.data(), voxels.size() * sizeof(Colored)), std::uint32_t(count)});
     model.voxel_count += count;
+}
+
+std::string VoxWriter::warning() const {
+    if (outside_ == 0) return {};
+    return fmt::format(
+        "{}: {} voxels lie outside of {} to {}, where MagicaVoxel shows none; other editors do",
+        path_.string(), outside_, -editor_reach, editor_reach - 1);
 }
 
 void VoxWriter::finish() {

@@ -10,7 +10,7 @@
 #include <tbb/task_group.h>
 
 #include "base/error.h"
-#include "scenes/transform.h"
+#include "scenes/snapshot.h"
 #include "shaders/interop/grid.h"
 #include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface_materials.h"
@@ -69,7 +69,7 @@ public:
           primitive_(*item_.primitive),
           materials_(materials),
           options_(options),
-          numbers_(item_.positions.size(), -1) {
+          numbers_(item_.vertex_count(), -1) {
         if (primitive_.material >= 0) {
             uv_from_mesh_ = scene.materials[std::size_t(primitive_.material)].uv_from_mesh;
         }
@@ -79,11 +79,9 @@ public:
         if (options.unplaced) return;
         has_normals_ = !item_.normals.empty();
         normal_from_mesh_ = normal_from_mesh(item_.world_from_mesh);
-        lattice_.reserve(item_.positions.size());
-        for (const glm::vec3& position : item_.positions) {
-            lattice_.push_back(
-                grid.lattice_from_world(scenes::transform_point(item_.world_from_mesh, position)));
-        }
+        lattice_.reserve(item_.vertex_count());
+        for (std::size_t vertex = 0; vertex < item_.vertex_count(); ++vertex)
+            lattice_.push_back(grid.lattice_from_world(item_.world(vertex)));
     }
 
     Part run() {

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <tuple>
 
 #include "base/error.h"
 
@@ -35,7 +36,7 @@ bool spans_too_much(const std::array<glm::vec2, 3>& texcoords, const interop::Su
 
 SurfaceMaterials::SurfaceMaterials(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                                    bool all_textures)
-    : image_offsets_(scene.images.size(), -1), masks_(scene.materials.size()) {
+    : budget_(scene.placing.bytes), image_offsets_(scene.images.size(), -1), masks_(scene.materials.size()) {
     std::vector<bool> used(scene.materials.size());
     std::optional<glm::vec3> color;
     for (const scenes::Item& item : snapshot.items) {
@@ -70,13 +71,24 @@ void SurfaceMaterials::add_twin(std::size_t scene_material) {
     mask.twin = std::uint32_t(materials.size());
     materials.push_back(twin);
     if (twin.width == 0) return;
-    const auto first = texels.begin() + twin.texel_offset;
+    std::tie(mask.lowest_alpha, mask.highest_alpha) = alpha_range(twin);
+    // Thresholds between the same two steps of 8 bits let the same texels pass.
+    const std::uint32_t lowest_passing = (twin.alpha_threshold + 255 * 256 - 1) / (255 * 256);
+    const auto [counts, is_new] = passing_offsets_.try_emplace({twin.texel_offset, lowest_passing});
+    if (is_new) counts->second = add_passing_counts(twin);
+    materials[scene_material + 1].passing_offset = counts->second;
+}
+
+std::pair<std::uint32_t, std::uint32_t> SurfaceMaterials::alpha_range(
+    const interop::SurfaceMaterial& material) {
+    const auto [range, is_new] = alpha_ranges_.try_emplace(material.texel_offset);
+    if (!is_new) return range->second;
+    const auto first = texels.begin() + material.texel_offset;
     const auto [low, high] =
-        std::minmax_element(first, first + std::ptrdiff_t(twin.width) * twin.height,
+        std::minmax_element(first, first + std::ptrdiff_t(material.width) * material.height,
                             [](std::uint32_t a, std::uint32_t b) { return a >> 24 < b >> 24; });
-    mask.lowest_alpha = *low >> 24;
-    mask.highest_alpha = *high >> 24;
-    materials[scene_material + 1].passing_offset = add_passing_counts(twin);
+    range->second = {*low >> 24, *high >> 24};
+    return range->second;
 }
 
 std::uint32_t SurfaceMaterials::add_passing_counts(const interop::SurfaceMaterial& material) {
@@ -97,6 +109,8 @@ std::uint32_t SurfaceMaterials::add_passing_counts(const interop::SurfaceMateria
 
 std::uint32_t SurfaceMaterials::grow_texels(std::size_t count) {
     const std::size_t offset = texels.size();
+    budget_.charge("images", "the texels of its pictures and the counts of its masks", count,
+                   sizeof(texels[0]));
     if (offset + count > std::numeric_limits<std::uint32_t>::max()) {
         throw Error(Fault::memory, "images", "the images of the scene hold too many texels",
                     "use smaller images");

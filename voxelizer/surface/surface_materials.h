@@ -2,10 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include <glm/glm.hpp>
 
+#include "scenes/memory_budget.h"
 #include "scenes/scene.h"
 #include "scenes/snapshot.h"
 #include "shaders/interop/surface.h"
@@ -22,7 +25,8 @@ enum class Shown : std::uint8_t { whole, cut, nothing };
 class SurfaceMaterials {
 public:
     /// @param all_textures  whether to upload every base-colour image in use, or only those of masks.
-    /// @throws Error  Fault::memory if the images hold more texels than 32 bits can number.
+    /// @throws Error  Fault::memory if the images hold more texels than 32 bits can number, or than
+    ///                Scene::placing allows.
     SurfaceMaterials(const scenes::Scene& scene, const scenes::Snapshot& snapshot, bool all_textures);
 
     [[nodiscard]] bool is_masked(int scene_material) const;
@@ -47,14 +51,21 @@ private:
     void add_material(const scenes::Scene& scene, const scenes::Material& material, bool textured);
     [[nodiscard]] std::uint32_t place_image(const scenes::Image& image, int index);
     void add_twin(std::size_t scene_material);
+    /// The lowest and the highest alpha of a material's texels.
+    std::pair<std::uint32_t, std::uint32_t> alpha_range(const interop::SurfaceMaterial& material);
     /// Counts the texels that pass, from the top left corner of the image (SurfaceMaterial::passing_offset).
     [[nodiscard]] std::uint32_t add_passing_counts(const interop::SurfaceMaterial& material);
     /// Makes room in `texels` for so many more words. @return the first.
     /// @throws Error  Fault::memory if 32 bits cannot number them.
     std::uint32_t grow_texels(std::size_t count);
 
+    scenes::MemoryBudget budget_;  ///< of `texels`
     std::vector<std::int64_t> image_offsets_;
     std::vector<Mask> masks_;  ///< one per material of the scene
+    // Many materials may share a picture. The keys are the place of its texels, and with it the lowest alpha
+    // that passes.
+    std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> alpha_ranges_;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> passing_offsets_;
 };
 
 }  // namespace cairn::voxelizer

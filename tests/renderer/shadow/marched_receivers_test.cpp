@@ -10,7 +10,7 @@
 #include "reference/image.h"
 #include "renderer/renderer.h"
 #include "scenes/load.h"
-#include "scenes/transform.h"
+#include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/test_scenes.h"
 #include "tests/support/voxel_renderer.h"
@@ -27,9 +27,7 @@ std::vector<glm::dvec3> plane_normals(const scenes::Snapshot& snapshot) {
     for (const scenes::Item& item : snapshot.items) {
         if (item.primitive->topology != scenes::Topology::triangles) continue;
         const auto& indices = item.primitive->indices;
-        const auto corner = [&](std::size_t i) {
-            return scenes::transform_point(item.world_from_mesh, item.positions[indices[i]]);
-        };
+        const auto corner = [&](std::size_t i) { return item.world(indices[i]); };
         for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
             const glm::dvec3 across = glm::cross(corner(i + 1) - corner(i), corner(i + 2) - corner(i));
             const double length = glm::length(across);

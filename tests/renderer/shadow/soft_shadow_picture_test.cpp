@@ -246,7 +246,7 @@ TEST_F(SoftShadowPictures, BunnyOnTheFloorIsNearTheTruth) {
     Corners bunny;
     for (const scenes::Item& item : snapshot.items) {
         for (const std::uint32_t index : item.primitive->indices) {
-            const dvec3 p(item.world_from_mesh * glm::dvec4(item.positions[index], 1.0));
+            const dvec3 p = item.world(index);
             bunny.push_back((p - low - 0.5 * dvec3(extent.x, 0.0, extent.z)) * (1.2 / extent.y));
         }
     }
