@@ -17,7 +17,7 @@ public:
     Interrupt& operator=(const Interrupt&) = delete;
     Interrupt(Interrupt&&) = delete;
     Interrupt& operator=(Interrupt&&) = delete;
-    /// Waits for nothing. Signals end the process as usual from then on.
+    /// Signals end the process as usual from then on.
     ~Interrupt();
 
     [[nodiscard]] static bool asked();

@@ -210,6 +210,19 @@ TEST(Meshopt, ViewsAreUnpackedAndTheFallbackIsNotTouched) {
     EXPECT_EQ(snapshot.bounds.high, glm::dvec3(31, 1, 0.5));
 }
 
+TEST(Meshopt, IsReadByItsKhronosNameToo) {
+    GltfFile file = with_meshopt();
+    std::string text = file.json.dump();
+    for (std::size_t at = text.find("EXT_meshopt"); at != std::string::npos; at = text.find("EXT_meshopt"))
+        text.replace(at, 3, "KHR");
+    file.json = Json::parse(text);
+    const Primitive renamed = load_glb(file).meshes.at(0).primitives.at(0);
+    const Primitive usual = load_glb(with_meshopt()).meshes.at(0).primitives.at(0);
+    EXPECT_EQ(renamed.positions, usual.positions);
+    EXPECT_EQ(renamed.indices, usual.indices);
+    EXPECT_FALSE(renamed.indices.empty());
+}
+
 TEST(Meshopt, RulesOfTheExtensionAreChecked) {
     const auto with = [](const char* key, const Json& value) {
         GltfFile file = with_meshopt();
