@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "app/options/options.h"
+#include "app/terminal/interrupt.h"
+#include "app/terminal/terminal.h"
 #include "base/error.h"
 #include "base/output_file.h"
 #include "renderer/open_content.h"
@@ -82,7 +84,7 @@ void check_outputs_differ(const CLI::App& command) {
     }
 }
 
-void add_verbs(CLI::App& command, Work& chosen) {
+void add_verbs(CLI::App& command, Work& chosen, void (*add_bench_verb)(CLI::App&, Work&)) {
     add_info(command, chosen);
     add_voxelize(command, chosen);
     add_check(command, chosen);
@@ -90,16 +92,16 @@ void add_verbs(CLI::App& command, Work& chosen) {
     add_view(command, chosen);
     add_shadow(command, chosen);
     add_export(command, chosen);
-    add_bench(command, chosen);
+    add_bench_verb(command, chosen);
 }
 
 }  // namespace
 
-Work read_command_line(const std::vector<std::string>& arguments) {
+Work read_command_line(const std::vector<std::string>& arguments, void (*add_bench_verb)(CLI::App&, Work&)) {
     const auto command = std::make_shared<CLI::App>(
         "Voxelizes glTF scenes on the GPU, and renders them through a bounded voxel cache.", "cairn");
     Work chosen;
-    add_verbs(*command, chosen);
+    add_verbs(*command, chosen, add_bench_verb);
     command->require_subcommand(0, 1);
     command->set_version_flag("--version", "cairn " CAIRN_VERSION);
     command->get_formatter()->column_width(38);
@@ -119,6 +121,16 @@ Work read_command_line(const std::vector<std::string>& arguments) {
     if (!chosen) check_verb(*command, nullptr);
     check_outputs_differ(*command);
     return chosen;
+}
+
+int run_command(int argc, char** argv, void (*add_bench_verb)(CLI::App&, Work&)) {
+    secure_standard_streams();
+    try {
+        const Interrupt interrupt;
+        return int(read_command_line({argv + std::min(argc, 1), argv + argc}, add_bench_verb)());
+    } catch (...) {
+        return int(report_current_exception());
+    }
 }
 
 }  // namespace cairn::app

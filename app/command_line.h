@@ -14,6 +14,12 @@ namespace cairn::app {
 /// be writable.
 /// @param arguments  without the program's name.
 /// @throws Error     Fault::usage: if the verb is missing or unknown, or an option is invalid.
-[[nodiscard]] Work read_command_line(const std::vector<std::string>& arguments);
+/// @param add_bench_verb  adds the verb "bench"
+[[nodiscard]] Work read_command_line(const std::vector<std::string>& arguments,
+                                     void (*add_bench_verb)(CLI::App&, Work&) = add_bench_apart);
+
+/// All of a program's main(): secures its streams, does the work, and tells errors.
+/// @return the exit code
+[[nodiscard]] int run_command(int argc, char** argv, void (*add_bench_verb)(CLI::App&, Work&));
 
 }  // namespace cairn::app

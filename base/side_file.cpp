@@ -14,8 +14,9 @@ namespace cairn {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int code) {
-    throw Error(code == ENOSPC ? Fault::memory : Fault::usage, path.string(),
-                what + ": " + std::strerror(code), "name another place for the output");
+    const bool no_room = code == ENOSPC || code == EDQUOT || code == EFBIG;
+    throw Error(no_room ? Fault::memory : Fault::usage, path.string(), what + ": " + std::strerror(code),
+                "name another place for the output");
 }
 
 /// -1 when the folder takes no files.

@@ -1,10 +1,12 @@
 #include "gl/context.h"
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 
 #include <fmt/format.h>
 #include <glad/gl.h>
+#include <sys/mman.h>
 
 #include "base/error.h"
 #include "gl/context_backends.h"
@@ -49,6 +51,29 @@ std::unique_ptr<Context> create_automatic(bool debug) {
                 "install Mesa's software driver (Debian: libosmesa6, or libegl1 and libgl1-mesa-dri)");
 }
 
+std::unique_ptr<Context> create_of_kind(const ContextOptions& options) {
+    switch (options.kind) {
+        case ContextKind::osmesa:
+            return create_osmesa_context(options.debug);
+        case ContextKind::egl:
+            return create_egl_context(options.debug);
+        case ContextKind::automatic:
+            break;
+    }
+    return create_automatic(options.debug);
+}
+
+/// Whether the process may not take as much address space as a driver with its compiler does. Libraries that
+/// cannot be loaded, and drivers that do not start, do not say that this is why.
+bool memory_is_short() {
+    constexpr std::size_t of_a_driver = std::size_t(256) << 20;
+    void* const probe =
+        mmap(nullptr, of_a_driver, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (probe == MAP_FAILED) return true;
+    munmap(probe, of_a_driver);
+    return false;
+}
+
 class AdoptedContext final : public Context {
 public:
     explicit AdoptedContext(void* (*get_proc_address)(const char*)) {
@@ -74,15 +99,14 @@ void Context::load_functions(void* (*get_proc_address)(const char*), bool debug)
 }
 
 std::unique_ptr<Context> create_context(const ContextOptions& options) {
-    switch (options.kind) {
-        case ContextKind::osmesa:
-            return create_osmesa_context(options.debug);
-        case ContextKind::egl:
-            return create_egl_context(options.debug);
-        case ContextKind::automatic:
-            break;
+    try {
+        return create_of_kind(options);
+    } catch (const Error& error) {
+        if (error.fault() != Fault::context || !memory_is_short()) throw;
+        throw Error(Fault::memory, "OpenGL 4.5",
+                    fmt::format("there is too little memory for a driver ({})", error.what()),
+                    "let the process take more memory");
     }
-    return create_automatic(options.debug);
 }
 
 std::unique_ptr<Context> adopt_context(void* (*get_proc_address)(const char*)) {

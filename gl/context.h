@@ -72,7 +72,7 @@ private:
 };
 
 /// @throws Error  Fault::context if no library offers OpenGL 4.5; the message says which were tried and what
-///                each offers.
+///                each offers. Fault::memory if that is for lack of memory.
 [[nodiscard]] std::unique_ptr<Context> create_context(const ContextOptions& options = {});
 
 /// For a program that has a context already: loads the OpenGL functions for the current context, which must

@@ -14,6 +14,7 @@
 #include "reference/separating_axes.h"
 #include "shaders/interop/surface.h"
 #include "voxelizer/surface/exact_mask.h"
+#include "voxelizer/surface/surface_attributes.h"
 
 namespace cairn::reference {
 namespace {
@@ -52,12 +53,12 @@ public:
     /// The mask of a triangle; none if no mask cuts it.
     [[nodiscard]] std::optional<ExactMask> mask(std::size_t triangle) const {
         std::array<glm::vec2, 3> texcoords;
-        std::array<std::uint32_t, 3> colors;
+        std::array<std::uint16_t, 3> alphas{};
         std::uint32_t material = 0;
         if (triangle >= near_count_) {
             const voxelizer::FarTriangle& far_triangle = surface_.far_triangles[triangle - near_count_];
             texcoords = far_triangle.texcoords;
-            colors = far_triangle.colors;
+            alphas = far_triangle.alphas();
             material = far_triangle.material;
             if (!is_masked(material)) return std::nullopt;
         } else {
@@ -67,11 +68,11 @@ public:
             for (int corner = 0; corner < 3; ++corner) {
                 const interop::SurfaceAttributes& attributes =
                     place.chunk->attributes[place.triangle.vertices[corner]];
-                texcoords[std::size_t(corner)] = attributes.texcoord;
-                colors[std::size_t(corner)] = attributes.color;
+                texcoords[std::size_t(corner)] = voxelizer::texcoord_of(attributes);
+                alphas[std::size_t(corner)] = voxelizer::alpha_of(attributes);
             }
         }
-        return ExactMask(positions(triangle), texcoords, colors, surface_.materials[material],
+        return ExactMask(positions(triangle), texcoords, alphas, surface_.materials[material],
                          surface_.texels);
     }
 

@@ -83,7 +83,7 @@ glm::vec4 PrimitiveLook::texel_at(const TrianglePoint& point) const {
 glm::vec4 PrimitiveLook::vertex_color_at(const TrianglePoint& point) const {
     const scenes::Primitive& primitive = *item->primitive;
     if (primitive.colors.empty()) return glm::vec4(1.0F);
-    return blend<glm::vec4>(primitive.colors, primitive, point) / 255.0F;
+    return blend<glm::vec4>(primitive.colors, primitive, point) / 65535.0F;
 }
 
 glm::vec3 PrimitiveLook::color_at(const TrianglePoint& point) const {

@@ -176,6 +176,16 @@ std::optional<glm::i64vec3> ContentSource::voxels() const {
     return field_ ? std::optional(field_->frame().size) : std::nullopt;
 }
 
+std::optional<std::int64_t> ContentSource::finest_resolution() const {
+    if (kind_ == ContentKind::fractal) return std::nullopt;
+    if (!field_) return tree_shape_of(tree_).resolution();
+    const FieldFrame& frame = field_->frame();
+    const VolumeShape shape = make_volume_shape(frame, tree_.n, tree_.m, tree_.max_resolution);
+    const std::int64_t samples = std::max({frame.size.x, frame.size.y, frame.size.z});
+    const std::int64_t side = shape.finest_voxel_side();
+    return (samples + side - 1) / side;
+}
+
 std::unique_ptr<Content> ContentSource::content(const gl::ShaderSource& shaders) const {
     if (scene_) return surface_content(scene_->scene, scene_->snapshot, tree_, shaders);
     if (!field_) return fractal_content(tree_, shaders);

@@ -37,7 +37,7 @@ struct LoadOptions {
     bool strict = false;
     /// Bytes that the unpacked parts of a file may take together: geometry, animation and pictures. What
     /// take_snapshot() places may take as many again (Scene::placing). If nobody says so, these are
-    /// usual_memory_bytes, and less for a small file: 64 MiB (512 for pictures, 1024 for what is placed) and
+    /// usual_memory_bytes, and less for a small file: 64 MiB (192 for pictures, 1024 for what is placed) and
     /// 256 times its size.
     std::optional<std::uint64_t> memory_bytes = std::nullopt;
     Limits limits = {};

@@ -76,7 +76,7 @@ struct Primitive {
     std::vector<glm::vec3> normals;
     /// Texture coordinates of the set that the material's base colour texture uses, before uv_from_mesh.
     std::vector<glm::vec2> texcoords;
-    std::vector<glm::u8vec4> colors;  ///< COLOR_0: linear RGBA, 255 = 1
+    std::vector<glm::u16vec4> colors;  ///< COLOR_0: linear RGBA, 65535 = 1
     std::vector<SkinWeights> skin;
     /// Further sets of influences (JOINTS_1, ...), each with one entry per vertex.
     std::vector<std::vector<SkinWeights>> more_skin;

@@ -214,7 +214,7 @@ Json GlbBuilder::primitive_json(const Primitive& primitive) {
     }
     if (!primitive.texcoords.empty()) attributes["TEXCOORD_0"] = add_texcoords(primitive);
     if (!primitive.colors.empty()) {
-        const int accessor = add_accessor(view_of(primitive.colors), unsigned_byte, "VEC4", count);
+        const int accessor = add_accessor(view_of(primitive.colors), unsigned_short, "VEC4", count);
         root_["accessors"][accessor]["normalized"] = true;
         attributes["COLOR_0"] = accessor;
     }

@@ -78,10 +78,11 @@ glm::i64vec3 Grid::lattice_from_world(const glm::dvec3& world) const {
     glm::i64vec3 nearest;
     for (int axis = 0; axis < 3; ++axis) {
         if (!(std::abs(units[axis]) <= lattice_world_limit)) {
-            throw Error(Fault::input, "surface",
-                        fmt::format("the point ({}, {}, {}) is too far from the grid, or not finite", world.x,
-                                    world.y, world.z),
-                        "choose a larger grid (grid_over())");
+            const bool is_finite = std::isfinite(world.x) && std::isfinite(world.y) && std::isfinite(world.z);
+            throw Error(is_finite ? Fault::usage : Fault::input, "surface",
+                        fmt::format("the point ({}, {}, {}) is {}", world.x, world.y, world.z,
+                                    is_finite ? "too far from so small a grid" : "not finite"),
+                        is_finite ? "choose a larger grid (grid_over())" : "");
         }
         nearest[axis] = std::int64_t(std::floor(units[axis] + 0.5));
     }

@@ -273,20 +273,27 @@ bool is_device(const std::filesystem::path& path) {
            !std::filesystem::is_directory(there);
 }
 
-CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,
-                               const std::vector<std::string>& endings, const std::string& description) {
+CLI::Option* add_file_option(CLI::App& verb, const std::string& name,
+                             std::optional<std::filesystem::path>& output,
+                             const std::vector<std::string>& endings, const std::string& description) {
+    const std::string long_name = name.substr(name.rfind("--"));
     return add_parsed_option(
-        verb, "-o,--output", output_file, description, [&output, known = endings](const std::string& text) {
+        verb, name, output_file, description, [&output, known = endings, long_name](const std::string& text) {
             const std::filesystem::path path(text);
             if (!is_device(path) &&
                 std::ranges::find(known, lower_case(path.extension().string())) == known.end()) {
-                throw Error(Fault::usage, text.empty() ? "--output" : text,
+                throw Error(Fault::usage, text.empty() ? long_name : text,
                             fmt::format("no format ends in \"{}\"", path.extension().string()),
                             fmt::format("what this verb writes ends in {}", fmt::join(known, " or ")));
             }
             check_writable(path);
             output = path;
         });
+}
+
+CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,
+                               const std::vector<std::string>& endings, const std::string& description) {
+    return add_file_option(verb, "-o,--output", output, endings, description);
 }
 
 void check_writable(const std::filesystem::path& path) {

@@ -73,7 +73,11 @@ void check_grid_options(const GridOptions& options);
 /// The word for the value, in the help, of every option that names a file to write, and of no other.
 inline constexpr const char* output_file = "FILE";
 
-/// Adds the option `-o FILE`. FILE must end in one of `endings` (".npy").
+/// Adds an option that names a file to write. FILE must end in one of `endings` (".npy").
+CLI::Option* add_file_option(CLI::App& verb, const std::string& name,
+                             std::optional<std::filesystem::path>& output,
+                             const std::vector<std::string>& endings, const std::string& description);
+/// Adds the option `-o FILE`.
 CLI::Option* add_output_option(CLI::App& verb, std::optional<std::filesystem::path>& output,
                                const std::vector<std::string>& endings, const std::string& description);
 

@@ -112,11 +112,6 @@ void Subject::add_figures(Report& report) const {
     if (const auto voxels = source_.voxels()) report.add("voxels", json_of(*voxels));
 }
 
-std::optional<int> Subject::finest_resolution() const {
-    if (kind() == ContentKind::volume || kind() == ContentKind::fractal) return std::nullopt;
-    return renderer::tree_shape_of(tree()).resolution();
-}
-
 std::vector<std::string> Subject::unmet(const ViewOptions& options, const renderer::View& view) const {
     using Kind = renderer::ShadowQuality::Kind;
     std::vector<std::string> texts;
@@ -129,8 +124,11 @@ std::vector<std::string> Subject::unmet(const ViewOptions& options, const render
             fmt::format("{}: the light has no extent, so its shadows are hard; --light X,Y,Z,RADIUS "
                         "gives it one",
                         view.shadow.kind == Kind::cones ? "--cones" : "--shadow soft"));
-    const std::optional<int> finest = finest_resolution();
-    if (options.max_resolution && finest && *finest != *options.max_resolution)
+    const std::optional<std::int64_t> finest = finest_resolution();
+    const std::optional<glm::i64vec3> samples = source_.voxels();
+    // A volume has no more voxels than samples.
+    const bool all_of_volume = samples && finest == std::max({samples->x, samples->y, samples->z});
+    if (options.max_resolution && finest && *finest != *options.max_resolution && !all_of_volume)
         texts.push_back(
             fmt::format("--max-resolution {}: rays ask for at most {} voxels across, {} per brick and "
                         "{} times as many per level",

@@ -35,9 +35,10 @@ public:
     /// What of the options has no effect on the view, or another than asked for: one text for each.
     [[nodiscard]] std::vector<std::string> unmet(const ViewOptions& options,
                                                  const renderer::View& view) const;
-    /// The most voxels across a surface, or the sponge, that rays may ask for; none for volumes and the
-    /// fractal.
-    [[nodiscard]] std::optional<int> finest_resolution() const;
+    /// @see renderer::ContentSource::finest_resolution().
+    [[nodiscard]] std::optional<std::int64_t> finest_resolution() const {
+        return source_.finest_resolution();
+    }
     /// The content for a renderer. Needs a current context.
     [[nodiscard]] std::unique_ptr<renderer::Content> content(const gl::ShaderSource& shaders) const {
         return source_.content(shaders);

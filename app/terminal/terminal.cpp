@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <new>
@@ -32,6 +33,8 @@ void secure_standard_streams() {
         // that the stream is not used in, so that its use fails as that of a closed one.
         (void)open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
     }
+    // A limit of file sizes (ulimit -f) is then told by the write that meets it, as a full disk is.
+    (void)std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void tell(std::string_view text) {

@@ -14,7 +14,7 @@ namespace cairn::app {
 
 /// Opens /dev/null in place of each of stdin, stdout and stderr that is closed: else the next file that is
 /// opened would take its number, and what is meant for the terminal would be written into that file. Call it
-/// before anything else.
+/// before anything else. A limit of file sizes becomes an error of the write that meets it, not a signal.
 void secure_standard_streams();
 
 /// Writes to stderr. Whether that can be written makes no difference: what the command has done counts.

@@ -9,13 +9,9 @@
 #include "app/terminal/terminal.h"
 #include "app/verbs/verbs.h"
 #include "base/error.h"
-#ifdef CAIRN_BENCH
 #include "bench/charts/chart.h"
-#endif
 
 namespace cairn::app {
-
-#ifdef CAIRN_BENCH
 namespace {
 
 constexpr int max_runs = 1000;
@@ -181,23 +177,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_bench(CLI::App& command, Work& chosen) {
-    add_verb<Options>(command, chosen, "bench", "Measure speed and accuracy: a CSV and a picture",
-                      add_options, run);
+    add_verb<Options>(command, chosen, "bench", bench_description, add_options, run);
 }
-
-#else
-
-void add_bench(CLI::App& command, Work& chosen) {
-    CLI::App& verb = *command.add_subcommand("bench", "Measure speed and accuracy (not in this build)");
-    verb.allow_extras();
-    verb.callback([&chosen] {
-        chosen = []() -> ExitCode {
-            throw Error(Fault::usage, "bench", "this cairn was built without its benchmarks",
-                        "configure with -DCAIRN_BENCH=ON and build again");
-        };
-    });
-}
-
-#endif
 
 }  // namespace cairn::app

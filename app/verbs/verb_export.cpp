@@ -31,7 +31,7 @@ ExitCode run(const Options& options) {
     scenes::write_glb(input.scene, *options.output);
     report.add("write_ms", watch.lap_ms());
     report.add("output", options.output->string());
-    report.add("output_bytes", std::filesystem::file_size(*options.output));
+    if (!is_device(*options.output)) report.add("output_bytes", std::filesystem::file_size(*options.output));
     report.finish();
     return ExitCode::done;
 }

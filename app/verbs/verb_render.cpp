@@ -83,7 +83,7 @@ Repeated repeat(renderer::Renderer& renderer, const renderer::View& view, const 
 void add_settings(const Subject& subject, const ViewOptions& options, Report& report) {
     report.add("tree_n", subject.tree().n);
     report.add("brick_m", subject.tree().m);
-    if (const std::optional<int> finest = subject.finest_resolution())
+    if (const std::optional<std::int64_t> finest = subject.finest_resolution())
         report.add("finest_resolution", *finest);
     report.add("traversal", name_of(options.march.traversal, traversal_names()));
     report.add("tile_query_method", name_of(options.march.tile_queries, tile_query_names()));

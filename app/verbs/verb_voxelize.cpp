@@ -27,7 +27,8 @@ namespace fs = std::filesystem;
 struct Options {
     VoxelizationOptions voxelization;
     std::optional<fs::path> output;
-    bool solid = false;
+    std::optional<fs::path> doubtful;
+    std::optional<voxelizer::SolidRule> solid;
     bool plain = false;
 };
 
@@ -37,13 +38,16 @@ void add_options(CLI::App& verb, Options& options) {
         fmt::format("the file for the voxels; its ending is the format:\n{};\n.npy holds uint8 of shape "
                     "(X, Y, Z), a[x, y, z],\n1 = occupied",
                     fmt::join(voxelizer::voxel_file_endings(), ", ")));
-    add_parsed_option(verb, "--fill", "NAME",
-                      "surface: only voxels that the surface touches (default);\nsolid: also the insides "
-                      "of closed parts",
-                      [&options](const std::string& name) {
-                          const Names<bool> names = {{"surface", false}, {"solid", true}};
-                          options.solid = named("--fill", name, names);
-                      });
+    add_parsed_option(
+        verb, "--fill", "NAME",
+        "surface: only voxels that the surface touches (default);\n"
+        "solid, winding: also what the surface winds around;\n"
+        "parity: also what it is crossed an odd number of times to leave;\n"
+        "outside: also all that the outside cannot reach",
+        [&options](const std::string& name) { options.solid = named("--fill", name, fill_names()); });
+    add_file_option(verb, "--doubtful", options.doubtful, voxelizer::voxel_file_endings(),
+                    "a file for the voxels of a solid that the rules of --fill would\nnot agree on, without "
+                    "colours");
     verb.add_flag("--plain", options.plain, "no colours and no normals in the file: much faster");
     add_voxelization_options(verb, options.voxelization);
 }
@@ -75,6 +79,17 @@ std::unique_ptr<voxelizer::VoxelWriter> make_writer(const fs::path& path, const 
     return voxelizer::make_voxel_writer(path, grid);
 }
 
+/// @throws Error (Fault::usage) if doubtful voxels are asked for where there are none.
+void check_options(const Options& options) {
+    if (!options.doubtful) return;
+    if (!options.solid || *options.solid == voxelizer::SolidRule::outside) {
+        throw Error(Fault::usage, "--doubtful",
+                    options.solid ? "what the outside cannot reach is not in doubt"
+                                  : "voxels that the surface touches are not in doubt",
+                    "give --fill solid or --fill parity as well");
+    }
+}
+
 /// @return milliseconds spent on writing
 double voxelize(Voxelization& voxelization, voxelizer::VoxelWriter* writer, bool quiet) {
     double write_ms = 0.0;
@@ -103,20 +118,34 @@ double voxelize(Voxelization& voxelization, voxelizer::VoxelWriter* writer, bool
     return write_ms;
 }
 
+void write_doubts(Voxelization& voxelization, voxelizer::VoxelWriter* writer) {
+    if (writer == nullptr) {
+        voxelization.find_doubts({});
+        return;
+    }
+    voxelization.find_doubts([&](voxelizer::VoxelTile&& tile) { writer->add(tile); });
+    writer->finish();
+}
+
 ExitCode run(const Options& options) {
+    check_options(options);
     Report report(options.voxelization.common.report);
     GriddedInput scene = load_gridded(options.voxelization);
     std::unique_ptr<voxelizer::VoxelWriter> writer;
     if (options.output) writer = make_writer(*options.output, scene.grid);
+    std::unique_ptr<voxelizer::VoxelWriter> doubtful;
+    if (options.doubtful) doubtful = make_writer(*options.doubtful, scene.grid);
     Voxelization voxelization(
         options.voxelization, std::move(scene),
         {.attributes = writer && writer->wants_attributes() && !options.plain, .solid = options.solid});
     const double write_ms = voxelize(voxelization, writer.get(), options.voxelization.common.report.quiet);
+    write_doubts(voxelization, doubtful.get());
     voxelization.report(report);
     if (options.output) {
         report.add("write_ms", write_ms);
         report.add("output", options.output->string());
     }
+    if (options.doubtful) report.add("doubtful_output", options.doubtful->string());
     report.add("peak_rss_bytes", peak_rss_bytes());
     report.finish();
     return ExitCode::done;

@@ -20,7 +20,12 @@ void add_render(CLI::App& command, Work& chosen);
 void add_view(CLI::App& command, Work& chosen);
 void add_export(CLI::App& command, Work& chosen);
 void add_shadow(CLI::App& command, Work& chosen);
+/// Of the program cairn-bench.
 void add_bench(CLI::App& command, Work& chosen);
+/// The same verb of the command, which hands over to that program.
+void add_bench_apart(CLI::App& command, Work& chosen);
+
+inline constexpr const char* bench_description = "Measure speed and accuracy: a CSV and a picture";
 
 /// Adds a verb whose options are an `Options`, and whose work is `run(options)`.
 template <typename Options>

@@ -9,7 +9,6 @@
 #include "app/terminal/progress.h"
 #include "app/terminal/terminal.h"
 #include "base/error.h"
-#include "voxelizer/solid/solid_tiles.h"
 
 namespace cairn::app {
 
@@ -41,12 +40,15 @@ Voxelization::Voxelization(const VoxelizationOptions& options, GriddedInput scen
     const Progress progress("preparing", options.common.report.quiet);
     Stopwatch watch;
     surface_ = voxelizer::build_surface(scene.input.scene, scene.input.snapshot, grid_,
-                                        {.attributes = needs.attributes, .outside = needs.solid});
+                                        {.attributes = needs.attributes, .outside = needs.solid.has_value()});
     scene.input = {};  // what follows needs the memory
     triangle_count_ = surface_->triangle_count;
     index_.emplace(*surface_);
     surface_ms_ = watch.lap_ms();
-    if (needs.solid) build_fill();
+    if (needs.solid) {
+        rule_ = *needs.solid;
+        build_solid();
+    }
     fill_ms_ = watch.lap_ms();
     driver_.emplace(options.common.driver);
     context_ms_ = watch.lap_ms();
@@ -57,13 +59,45 @@ Voxelization::Voxelization(const VoxelizationOptions& options, GriddedInput scen
     if (needs.attributes) attributes_.emplace(options.common.driver.shaders);
 }
 
-void Voxelization::build_fill() {
-    fill_.emplace(*surface_, voxelizer::whole(grid_));
-    if (fill_->doubtful_rows() == 0 || options_.common.report.quiet) return;
+void Voxelization::build_solid() {
+    solid_.emplace(*surface_, grid_, voxelizer::SolidOptions{.rule = rule_});
+    const std::optional<voxelizer::SolidFill>& crossings = solid_->crossings();
+    if (!crossings || crossings->doubtful_rows() == 0 || options_.common.report.quiet) return;
     warn(
-        fmt::format("the surface is not closed, or not turned one way, along {} of {} rows of voxels: there "
-                    "only what rows along other axes agree on was filled",
-                    fill_->doubtful_rows(), fill_->row_count()));
+        fmt::format("the surface is not closed{} along {} of {} rows of voxels: there only what rows along "
+                    "other axes agree on was filled",
+                    rule_ == voxelizer::SolidRule::winding ? ", or not turned one way," : "",
+                    crossings->doubtful_rows(), crossings->row_count()));
+}
+
+void Voxelization::find_doubts(const voxelizer::TileSink& sink) {
+    if (!solid_) return;
+    Stopwatch watch;
+    doubts_ = solid_->find_doubts(sink);
+    doubts_ms_ = watch.lap_ms();
+    if (!doubts_ && sink) {
+        throw Error(Fault::memory, "--doubtful", "what the outside reaches takes more memory than it may",
+                    "choose fewer voxels");
+    }
+    if (options_.common.report.quiet) return;
+    if (!doubts_) {
+        warn(
+            "doubtful voxels were not looked for: what the outside reaches would take more memory than it "
+            "may");
+        return;
+    }
+    if (doubts_->enclosed > 0) {
+        warn(
+            fmt::format("{} voxels stayed empty, though the surface encloses them: faces are doubled or "
+                        "missing, or parts are turned against each other; --fill outside fills them",
+                        doubts_->enclosed));
+    }
+    if (doubts_->reached > 0) {
+        warn(
+            fmt::format("{} voxels were filled, though the outside reaches them through a hole; --fill "
+                        "outside leaves them empty",
+                        doubts_->reached));
+    }
 }
 
 void Voxelization::add_attributes(voxelizer::VoxelTile& tile) {
@@ -79,15 +113,14 @@ void Voxelization::run(const voxelizer::TileSink& sink, const voxelizer::TilePro
         add_attributes(tile);
         sink(std::move(tile));
     };
-    std::optional<voxelizer::SolidTiles> solid;
-    if (fill_) solid.emplace(*fill_, grid_, with_attributes);
     statistics_ = voxelizer::voxelize_tiles(
         *voxelizer_, on_gpu_, *index_, grid_,
-        solid ? [&](voxelizer::VoxelTile&& tile) { solid->add(std::move(tile)); } : with_attributes,
+        solid_ ? [&](voxelizer::VoxelTile&& tile) { solid_->add(std::move(tile), with_attributes); }
+               : with_attributes,
         [&progress](double share) { return !Interrupt::asked() && progress(share); }, {.warm_up = true});
-    if (solid) {
-        solid->finish();
-        statistics_.occupied = solid->occupied();
+    if (solid_) {
+        solid_->finish(with_attributes);
+        statistics_.occupied = solid_->occupied();
     }
     driver_->check();
 }
@@ -102,9 +135,13 @@ void Voxelization::report(Report& report) const {
     report.add("occupied", statistics_.occupied);
     report.add("milliseconds", statistics_.milliseconds);
     report.add("regions", statistics_.regions);
-    if (fill_) {
+    if (solid_) {
+        report.add("fill_rule", name_of(std::optional(rule_), fill_names()));
         report.add("fill_ms", fill_ms_);
-        report.add("doubtful_rows", fill_->doubtful_rows());
+        if (solid_->crossings()) report.add("doubtful_rows", solid_->crossings()->doubtful_rows());
+        report.add("doubtful_enclosed", doubts_ ? Json(doubts_->enclosed) : Json());
+        report.add("doubtful_reached", doubts_ ? Json(doubts_->reached) : Json());
+        report.add("doubts_ms", doubts_ms_);
     }
     if (attributes_) report.add("attributes_ms", attributes_ms_);
     report.add("load_ms", load_ms_);
@@ -113,6 +150,16 @@ void Voxelization::report(Report& report) const {
     report.add("upload_ms", upload_ms_);
     report.add("driver", driver_->name());
     report.add("backend", driver_->backend());
+}
+
+const Names<std::optional<voxelizer::SolidRule>>& fill_names() {
+    using voxelizer::SolidRule;
+    static const Names<std::optional<SolidRule>> names = {{"surface", std::nullopt},
+                                                          {"winding", SolidRule::winding},
+                                                          {"solid", SolidRule::winding},
+                                                          {"parity", SolidRule::parity},
+                                                          {"outside", SolidRule::outside}};
+    return names;
 }
 
 Json resolution_of(const voxelizer::Grid& grid) {

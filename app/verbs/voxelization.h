@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "app/options/names.h"
 #include "app/options/options.h"
 #include "app/subject/scene_input.h"
 #include "app/terminal/driver.h"
@@ -11,7 +12,7 @@
 #include "voxelizer/methods/voxel_attributes.h"
 #include "voxelizer/methods/voxelize_tiles.h"
 #include "voxelizer/methods/voxelizer.h"
-#include "voxelizer/solid/fill.h"
+#include "voxelizer/solid/solid_tiles.h"
 #include "voxelizer/surface/surface.h"
 #include "voxelizer/surface/triangle_index.h"
 
@@ -39,9 +40,9 @@ struct GriddedInput {
 class Voxelization {
 public:
     struct Needs {
-        bool attributes = false;  ///< tiles have colours and normals
-        bool surface = false;     ///< surface() is kept after the upload
-        bool solid = false;       ///< insides of closed parts are filled
+        bool attributes = false;                         ///< tiles have colours and normals
+        bool surface = false;                            ///< surface() is kept after the upload
+        std::optional<voxelizer::SolidRule> solid = {};  ///< insides of closed parts are filled
     };
     /// Prepares everything on the GPU, and frees the scene.
     Voxelization(const VoxelizationOptions& options, GriddedInput scene, const Needs& needs);
@@ -53,12 +54,16 @@ public:
     /// @throws Error (Fault::interrupted) if Interrupt::asked(); what `sink` throws.
     void run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress);
 
+    /// Warns of voxels of a solid that are doubtful, and passes tiles of them to `sink`. After run().
+    /// @throws Error (Fault::memory) if there is a sink, and what the outside reaches takes too much memory.
+    void find_doubts(const voxelizer::TileSink& sink);
+
     /// Adds the figures of both verbs: the grid, occupied voxels, times and the driver.
     void report(Report& report) const;
 
 private:
     void add_attributes(voxelizer::VoxelTile& tile);
-    void build_fill();
+    void build_solid();
 
     VoxelizationOptions options_;
     voxelizer::Grid grid_;
@@ -68,8 +73,11 @@ private:
     double upload_ms_ = 0.0;
     std::optional<voxelizer::Surface> surface_;
     std::uint64_t triangle_count_ = 0;
-    std::optional<voxelizer::SolidFill> fill_;
+    std::optional<voxelizer::SolidTiles> solid_;
+    voxelizer::SolidRule rule_ = voxelizer::SolidRule::winding;
+    std::optional<voxelizer::Doubts> doubts_;
     double fill_ms_ = 0.0;
+    double doubts_ms_ = 0.0;
     std::optional<voxelizer::TriangleIndex> index_;
     std::optional<Driver> driver_;
     voxelizer::GpuSurface on_gpu_;
@@ -78,6 +86,9 @@ private:
     double attributes_ms_ = 0.0;
     voxelizer::TileStatistics statistics_;
 };
+
+/// The names of what can be filled, as options and reports have them.
+[[nodiscard]] const Names<std::optional<voxelizer::SolidRule>>& fill_names();
 
 /// The value of "resolution" in a report: one number for a cube, else three.
 [[nodiscard]] Json resolution_of(const voxelizer::Grid& grid);

@@ -10,6 +10,7 @@
 #include "shaders/interop/surface.h"
 #include "voxelizer/surface/exact_mask.h"
 #include "voxelizer/surface/far_triangles.h"
+#include "voxelizer/surface/surface_attributes.h"
 
 namespace cairn::bench {
 namespace {
@@ -132,14 +133,14 @@ public:
         }
         std::array<glm::i64vec3, 3> positions;
         std::array<glm::vec2, 3> texcoords;
-        std::array<std::uint32_t, 3> colors;
+        std::array<std::uint16_t, 3> alphas{};
         for (std::size_t i = 0; i < 3; ++i) {
             const auto& attributes = chunk.attributes[triangle.vertices[int(i)]];
             positions[i] = corners[i];
-            texcoords[i] = attributes.texcoord;
-            colors[i] = attributes.color;
+            texcoords[i] = voxelizer::texcoord_of(attributes);
+            alphas[i] = voxelizer::alpha_of(attributes);
         }
-        const voxelizer::ExactMask mask(positions, texcoords, colors, material, surface_.texels);
+        const voxelizer::ExactMask mask(positions, texcoords, alphas, material, surface_.texels);
         const std::int64_t side = region_.voxel_side();
         mark(
             spans, [&](int x, int y, int z) { return mask.touches(glm::i64vec3(x, y, z) * side, side); },

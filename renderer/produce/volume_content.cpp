@@ -108,7 +108,7 @@ private:
 };
 
 voxelizer::Grid grid_of(const VolumeShape& shape, const FieldFrame& frame) {
-    const auto finest = double(voxel_side(frame.n, shape.finest_coarseness));
+    const auto finest = double(shape.finest_voxel_side());
     return {frame.origin, frame.voxel_size * finest, glm::ivec3(shape.tree.resolution())};
 }
 
@@ -117,6 +117,10 @@ voxelizer::Grid grid_of(const VolumeShape& shape, const FieldFrame& frame) {
 DensityTest::DensityTest(const VisibleDensities& visible) {
     for (std::size_t i = 0; i < visible.size(); ++i)
         before_[i + 1] = std::uint16_t(before_[i] + (visible[i] ? 1 : 0));
+}
+
+std::int64_t VolumeShape::finest_voxel_side() const {
+    return voxel_side(tree.n, finest_coarseness);
 }
 
 VolumeShape make_volume_shape(const FieldFrame& frame, int n, int m, int max_resolution) {

@@ -37,6 +37,8 @@ struct VolumeShape {
 
     /// Coarseness of the voxels of a level.
     [[nodiscard]] int coarseness(int level) const { return finest_coarseness + tree.max_level - level; }
+    /// Side of the finest voxels, in samples of the field.
+    [[nodiscard]] std::int64_t finest_voxel_side() const;
 };
 
 /// The least tree that holds the field at its finest, but with at most `max_resolution` voxels across the

@@ -16,9 +16,9 @@ namespace {
 
 struct Vertex {
     glm::vec3 position{0.0F};
-    glm::vec3 normal{0.0F};    ///< 0: no normal; the triangle's is used
-    glm::u8vec4 color{255};    ///< linear
-    glm::vec2 texcoord{0.0F};  ///< after KHR_texture_transform
+    glm::vec3 normal{0.0F};     ///< 0: no normal; the triangle's is used
+    glm::u16vec4 color{65535};  ///< linear
+    glm::vec2 texcoord{0.0F};   ///< after KHR_texture_transform
 };
 
 GLint wrap_mode(scenes::Wrap wrap) {
@@ -148,7 +148,7 @@ void ShadowMesh::bind_attributes() {
     };
     add(ATTRIBUTE_SHADOW_POSITION, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, position));
     add(ATTRIBUTE_SHADOW_NORMAL, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, normal));
-    add(ATTRIBUTE_SHADOW_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, color));
+    add(ATTRIBUTE_SHADOW_COLOR, 4, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(Vertex, color));
     add(ATTRIBUTE_SHADOW_TEXCOORD, 2, GL_FLOAT, GL_FALSE, offsetof(Vertex, texcoord));
 }
 

@@ -202,9 +202,9 @@ void TreeGrower::add_leaf(const glm::dvec3& foot, const glm::dvec3& along, const
     }
     const double age = leaf_random_.unit();
     const auto shade = [&](double young, double old) {
-        return static_cast<std::uint8_t>(255.0 * (young + (old - young) * age));
+        return static_cast<std::uint16_t>(65535.0 * (young + (old - young) * age));
     };
-    const glm::u8vec4 color(shade(0.7, 1.0), shade(1.0, 0.75), shade(0.8, 0.5), 255);
+    const glm::u16vec4 color(shade(0.7, 1.0), shade(1.0, 0.75), shade(0.8, 0.5), 65535);
     foliage_.colors.resize(foliage_.positions.size(), color);
 }
 

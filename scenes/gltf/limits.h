@@ -58,7 +58,7 @@ private:
 /// For geometry and animation.
 inline constexpr std::uint64_t geometry_floor_bytes = 64ULL << 20;
 /// For pictures: one of a single colour unpacks to a thousand times its size, and a scene may have many.
-inline constexpr std::uint64_t picture_floor_bytes = 512ULL << 20;
+inline constexpr std::uint64_t picture_floor_bytes = 192ULL << 20;
 /// For what is placed: instances are few bytes each.
 inline constexpr std::uint64_t placing_floor_bytes = 1024ULL << 20;
 

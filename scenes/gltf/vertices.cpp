@@ -59,11 +59,12 @@ void read_colors(const VertexSource& source, Primitive& result) {
     const auto colors = read_vectors<glm::vec4>(source, elements, 3, 1.0F);
     result.colors.reserve(colors.size());
     for (const glm::vec4& color : colors) {
-        glm::u8vec4 bytes;
-        for (int c = 0; c < 4; ++c)  // the comparison is false for NaN, too
-            bytes[c] =
-                static_cast<std::uint8_t>(color[c] > 0.0F ? std::min(color[c], 1.0F) * 255.0F + 0.5F : 0.0F);
-        result.colors.push_back(bytes);
+        glm::u16vec4 steps;
+        for (int c = 0; c < 4; ++c) {  // the comparison is false for NaN, too
+            const float clamped = color[c] > 0.0F ? std::min(color[c], 1.0F) : 0.0F;
+            steps[c] = static_cast<std::uint16_t>(clamped * 65535.0F + 0.5F);
+        }
+        result.colors.push_back(steps);
     }
 }
 

@@ -38,8 +38,8 @@ struct SurfaceTriangle {
 struct SurfaceAttributes {
     // Octahedral, snorm 16 + 16; 0 = none: the triangle's normal is used.
     uint normal;
-    uint color;     // RGBA8, linear, 255 = 1
-    vec2 texcoord;  // texture coordinate, after KHR_texture_transform
+    uint red_green, blue_alpha;  // linear, unorm 16 + 16, the first in the low bits
+    float u, v;                  // texture coordinate, after KHR_texture_transform
 };
 
 struct SurfaceMaterial {
@@ -49,18 +49,18 @@ struct SurfaceMaterial {
     uint height;
     uint flags;           // MATERIAL_*
     float alpha_cutoff;
-    // A texel passes the mask if texel alpha * vertex alpha * 256 >= alpha_threshold, with alphas of 0 to
-    // 255.
+    // A texel passes the mask if texel alpha * vertex alpha * 256 >= alpha_threshold * 257, with texel alphas
+    // of 0 to 255 and vertex alphas of 0 to 65535 (257 * 255).
     uint alpha_threshold;
     // If masked and textured: place in SSBO_SURFACE_TEXELS of (width + 1) * (height + 1) counts. Count (x, y)
-    // is the number of texels left of x and above y that pass, for vertex alpha 255.
+    // is the number of texels left of x and above y that pass, for vertex alpha 65535.
     uint passing_offset;
     uint padding;
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(SurfaceTriangle) == 16, "GLSL sees another layout");
-static_assert(sizeof(SurfaceAttributes) == 16, "GLSL sees another layout");
+static_assert(sizeof(SurfaceAttributes) == 20, "GLSL sees another layout");
 static_assert(sizeof(SurfaceMaterial) == 48, "GLSL sees another layout");
 }  // namespace cairn::interop
 #endif

@@ -30,7 +30,7 @@ struct MaskedTriangle {
     ivec3 x, y, z;        // coordinates of the vertices, on the lattice
     // Texture coordinates in units of 1 / texel_side texels, less `period`.
     ivec3 u, v;
-    ivec3 alpha;          // vertex alphas, 0 to 255
+    ivec3 alpha;          // vertex alphas, 0 to 65535
     ivec2 period;         // whole textures that were subtracted from u and v
     int texel_side;
     SurfaceMaterial material;
@@ -44,10 +44,9 @@ MaskedTriangle masked_triangle(uint triangle) {
     m.y = ivec3(a.y, b.y, c.y);
     m.z = ivec3(a.z, b.z, c.z);
     m.material = surface_materials[surface_triangles[triangle].material];
-    m.alpha = ivec3(attributes[corners.x].color >> 24, attributes[corners.y].color >> 24,
-                    attributes[corners.z].color >> 24);
-    const vec2 ta = attributes[corners.x].texcoord, tb = attributes[corners.y].texcoord,
-               tc = attributes[corners.z].texcoord;
+    m.alpha = ivec3(attribute_alpha(corners.x), attribute_alpha(corners.y), attribute_alpha(corners.z));
+    const vec2 ta = attribute_texcoord(corners.x), tb = attribute_texcoord(corners.y),
+               tc = attribute_texcoord(corners.z);
     // Coordinates are multiples of 1 / TEXCOORD_UNITS. So differences are exact, and there is one rounding.
     const vec2 period = floor(min(min(ta, tb), tc));
     m.period = ivec2(period);
@@ -224,7 +223,7 @@ MaskRange mask_range(MaskedTriangle m, MaskPolygon polygon) {
 // 2^level rows, and strips without a texel that passes are skipped. A convex part in one row or column
 // touches all texels from the first to the last.
 int mask_decide(MaskedTriangle m, ivec3 voxel, int shift) {
-    if (m.material.width == 0u || m.alpha != ivec3(255)) return MASK_UNDECIDED;
+    if (m.material.width == 0u || m.alpha != ivec3(65535)) return MASK_UNDECIDED;
     mask_begin(m, voxel, shift);
     MaskPolygon inside = MaskPolygon(0, 3);
     ivec2 all_rows = ivec2(0), strip = ivec2(-2147483647, 2147483647);

@@ -6,3 +6,12 @@ layout(std430, binding = SSBO_SURFACE_ATTRIBUTES) restrict readonly buffer Attri
     SurfaceAttributes attributes[];
 };
 layout(std430, binding = SSBO_SURFACE_TEXELS) restrict readonly buffer TexelBlock { uint texels[]; };
+
+vec4 attribute_color(uint vertex) {
+    return vec4(unpackUnorm2x16(attributes[vertex].red_green), unpackUnorm2x16(attributes[vertex].blue_alpha));
+}
+
+// 0 to 65535.
+int attribute_alpha(uint vertex) { return int(attributes[vertex].blue_alpha >> 16); }
+
+vec2 attribute_texcoord(uint vertex) { return vec2(attributes[vertex].u, attributes[vertex].v); }

@@ -39,14 +39,13 @@ vec4 nearest_texel(SurfaceMaterial material, vec2 uv) {
 }
 
 vec2 texcoord_at(SurfacePoint p) {
-    return p.weights.x * attributes[p.vertices.x].texcoord + p.weights.y * attributes[p.vertices.y].texcoord +
-           p.weights.z * attributes[p.vertices.z].texcoord;
+    return p.weights.x * attribute_texcoord(p.vertices.x) + p.weights.y * attribute_texcoord(p.vertices.y) +
+           p.weights.z * attribute_texcoord(p.vertices.z);
 }
 
 vec4 vertex_color_at(SurfacePoint p) {
-    return p.weights.x * unpackUnorm4x8(attributes[p.vertices.x].color) +
-           p.weights.y * unpackUnorm4x8(attributes[p.vertices.y].color) +
-           p.weights.z * unpackUnorm4x8(attributes[p.vertices.z].color);
+    return p.weights.x * attribute_color(p.vertices.x) + p.weights.y * attribute_color(p.vertices.y) +
+           p.weights.z * attribute_color(p.vertices.z);
 }
 
 vec3 color_at(SurfacePoint p, SurfaceMaterial material) {

@@ -1,5 +1,6 @@
 // The figures of the command: their names, their values, and that text and JSON agree.
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <regex>
@@ -283,6 +284,27 @@ TEST(AppVoxelize, SolidFillsWhatIsClosedAndWarnsOfWhatIsNot) {
     EXPECT_EQ(open.code, 0) << open;
     EXPECT_NE(open.err.find("rows of voxels"), std::string::npos) << open;
     EXPECT_GT(open.json()["doubtful_rows"], 0) << open;
+}
+
+TEST(AppVoxelize, DoubtfulVoxelsAreCountedAndWritten) {
+    const ScratchFolder folder;
+    const std::string file = folder.file("doubtful.npy");
+    // The walls of the Cornell box have no front wall; the outside comes in and reaches all but its blocks.
+    const Answer answer = cairn(
+        {"voxelize", "builtin:cornell", "-r", "64", "--fill", "parity", "--doubtful", file, "--json", "-"});
+    ASSERT_EQ(answer.code, 0) << answer;
+    const Json figures = answer.json();
+    EXPECT_EQ(figures["fill_rule"], "parity");
+    EXPECT_EQ(figures["doubtful_output"], file);
+    const std::string written = read_text(file);
+    constexpr std::size_t voxels = std::size_t(64) * 64 * 64;
+    ASSERT_GT(written.size(), voxels);
+    const std::int64_t ones = std::count(written.end() - voxels, written.end(), '\1');
+    EXPECT_EQ(ones, int(figures["doubtful_enclosed"]) + int(figures["doubtful_reached"])) << answer;
+    const Json outside = cairn_json({"voxelize", "builtin:cornell", "-r", "64", "--fill", "outside"});
+    EXPECT_EQ(outside["fill_rule"], "outside");
+    EXPECT_FALSE(outside.contains("doubtful_rows"));
+    EXPECT_EQ(outside["doubtful_enclosed"], 0);
 }
 
 TEST(AppVoxelize, PlainFilesHaveNoAttributes) {

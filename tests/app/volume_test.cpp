@@ -16,6 +16,12 @@ namespace {
 
 class VolumeCommand : public ::testing::Test {
 protected:
+    VolumeCommand() {
+        write_text(folder_.path() / "field.mha",
+                   std::string("NDims = 3\nDimSize = 64 64 64\nElementType = MET_UCHAR\n"
+                               "ElementDataFile = LOCAL\n") +
+                       std::string(64 * 64 * 64, '\xC8'));
+    }
     [[nodiscard]] std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
     /// Writes a volume of 8 x 4 x 2 samples of 200.
     [[nodiscard]] std::string block() const {
@@ -50,6 +56,22 @@ TEST_F(VolumeCommand, RenderMakesAPictureAndCountsVoxels) {
         cairn_json({"render", "builtin:ball", "--size", "32x24", "--max-resolution", "64", "--transfer",
                     "0:1,1,1:0;1:1,0.5,0:0.3", "-o", path("ball.png")});
     EXPECT_EQ(ball.at("voxels"), nlohmann::json({64, 64, 64}));
+}
+
+TEST_F(VolumeCommand, AResolutionThatIsNotMetIsTold) {
+    // 64 voxels across, of which a level has 4 times as many as the one above it.
+    const std::pair<const char*, int> finest[] = {{"64", 64}, {"63", 16}, {"16", 16}};
+    for (const auto& [asked, across] : finest) {
+        const Answer answer = cairn({"render", path("field.mha"), "--size", "16x12", "--max-resolution",
+                                     asked, "-o", path("field.png"), "--json", "-"});
+        ASSERT_EQ(answer.code, 0) << answer;
+        EXPECT_EQ(answer.json().value("finest_resolution", 0), across) << answer;
+        const bool is_told = answer.err.find("at most " + std::to_string(across)) != std::string::npos;
+        EXPECT_EQ(is_told, std::to_string(across) != asked) << answer;
+    }
+    const Answer more = cairn({"render", path("field.mha"), "--size", "16x12", "--max-resolution", "4096",
+                               "-o", path("field.png")});
+    EXPECT_EQ(more.err, "") << "a volume has no more voxels than samples" << more;
 }
 
 TEST_F(VolumeCommand, StepsAndGradientsChangeThePicture) {

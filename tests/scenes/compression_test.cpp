@@ -85,7 +85,7 @@ void expect_the_square(const GltfFile& file) {
     for (const std::uint32_t index : primitive.indices)
         if (primitive.positions[index] == glm::vec3(1, 1, 0.25F)) {
             found = true;
-            EXPECT_EQ(primitive.colors[index], glm::u8vec4(0, 0, 255, 255));
+            EXPECT_EQ(primitive.colors[index], glm::u16vec4(0, 0, 65535, 65535));
         }
     EXPECT_TRUE(found);
 }

@@ -184,18 +184,23 @@ TEST(Geometry, BoundsLeaveOutVerticesThatNothingUses) {
     EXPECT_EQ(take_snapshot(load_glb(file)).bounds.high, glm::dvec3(1, 1, 0));
 }
 
-TEST(Geometry, VertexColorsOfEveryTypeBecomeBytes) {
+TEST(Geometry, VertexColorsOfEveryTypeKeepSixteenBits) {
     GltfFile file;
     const int positions = file.add_accessor(std::vector<float>{0, 0, 0, 1, 0, 0}, "VEC3");
     const int floats = file.add_accessor(std::vector<float>{0, 0.5F, 2, -1, 1, std::nanf("")}, "VEC3");
     const int shorts =
         file.add_accessor(std::vector<std::uint16_t>{0, 32768, 65535, 65535, 1, 2, 3, 0}, "VEC4", true);
-    for (const int colors : {floats, shorts})
+    const int bytes =
+        file.add_accessor(std::vector<std::uint8_t>{0, 1, 254, 255, 128, 2, 3, 0}, "VEC4", true);
+    for (const int colors : {floats, shorts, bytes})
         file.add_mesh({{"attributes", {{"POSITION", positions}, {"COLOR_0", colors}}}, {"mode", 0}});
     const Scene scene = load_glb(file);
-    EXPECT_EQ(first(scene).colors[0], glm::u8vec4(0, 128, 255, 255));
-    EXPECT_EQ(first(scene).colors[1], glm::u8vec4(0, 255, 0, 255));
-    EXPECT_EQ(scene.meshes[1].primitives[0].colors[0], glm::u8vec4(0, 128, 255, 255));
+    EXPECT_EQ(first(scene).colors[0], glm::u16vec4(0, 32768, 65535, 65535));
+    EXPECT_EQ(first(scene).colors[1], glm::u16vec4(0, 65535, 0, 65535));
+    EXPECT_EQ(scene.meshes[1].primitives[0].colors[0], glm::u16vec4(0, 32768, 65535, 65535));
+    EXPECT_EQ(scene.meshes[1].primitives[0].colors[1], glm::u16vec4(1, 2, 3, 0));
+    EXPECT_EQ(scene.meshes[2].primitives[0].colors[0], glm::u16vec4(0, 257, 254 * 257, 65535));
+    EXPECT_EQ(scene.meshes[2].primitives[0].colors[1], glm::u16vec4(128 * 257, 2 * 257, 3 * 257, 0));
 }
 
 /// A textured square, whose material a test can change.

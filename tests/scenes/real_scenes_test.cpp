@@ -64,7 +64,7 @@ std::size_t geometry_bytes(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes)
         for (const Primitive& p : mesh.primitives)
             bytes += p.indices.size() * 4 + p.positions.size() * 12 + p.normals.size() * 12 +
-                     p.texcoords.size() * 8 + p.colors.size() * 4;
+                     p.texcoords.size() * 8 + p.colors.size() * 8;
     for (const Node& node : scene.nodes)
         bytes += sizeof(Node) + node.instances.size() * sizeof(Trs);
     return bytes;

@@ -41,6 +41,7 @@ Answer cairn(const std::vector<std::string>& arguments, const Surroundings& surr
     const ScratchFolder scratch;
     std::string line;
     if (!surroundings.folder.empty()) line += fmt::format("cd {} && ", quoted(surroundings.folder.string()));
+    if (!surroundings.limits.empty()) line += surroundings.limits + " && ";
     line += "env CAIRN_GL_DEBUG=1";
     for (const auto& [name, value] : surroundings.environment) {
         line += fmt::format(" {}={}", name, quoted(value));

@@ -25,6 +25,7 @@ struct Surroundings {
     std::filesystem::path folder = {};                    ///< working folder; empty: that of the test
     std::map<std::string, std::string> environment = {};  ///< variables added to those of the test
     std::string redirections = {};  ///< of the shell, as "2>&-": instead of those of the test
+    std::string limits = {};        ///< what the shell does before, as "ulimit -v 262144"
 };
 
 /// Runs `cairn ARGUMENTS...` to its end. OpenGL errors end it (CAIRN_GL_DEBUG).

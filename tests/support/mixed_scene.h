@@ -32,7 +32,7 @@ inline void add_triangles(scenes::Primitive& primitive, Random& random, int coun
             primitive.positions.push_back(low + size * glm::vec3(unit(), unit(), unit()));
             primitive.normals.push_back(glm::normalize(glm::vec3(unit(), unit(), 0.1F)));
             primitive.texcoords.emplace_back(3.0F * unit(), 3.0F * unit());
-            primitive.colors.emplace_back(255.0F * glm::vec3(unit(), unit(), unit()), 255);
+            primitive.colors.emplace_back(65535.0F * glm::vec3(unit(), unit(), unit()), 65535);
         }
     }
 }

@@ -61,8 +61,9 @@ inline ::testing::AssertionResult same_vertices(const voxelizer::GpuSurface& our
         for (std::size_t i = 0; i < attributes.size(); ++i) {
             if (steps_between(attributes[i].normal, chunk.attributes[i].normal) > 1 ||
                 (attributes[i].normal == 0) != (chunk.attributes[i].normal == 0) ||
-                attributes[i].color != chunk.attributes[i].color ||
-                attributes[i].texcoord != chunk.attributes[i].texcoord)
+                attributes[i].red_green != chunk.attributes[i].red_green ||
+                attributes[i].blue_alpha != chunk.attributes[i].blue_alpha ||
+                attributes[i].u != chunk.attributes[i].u || attributes[i].v != chunk.attributes[i].v)
                 return ::testing::AssertionFailure()
                        << fmt::format("attributes of vertex {}: normal {:08x}, not {:08x}", i,
                                       attributes[i].normal, chunk.attributes[i].normal);

@@ -27,8 +27,8 @@ BitGrid interior(const SolidFill& fill, const Region& tile) {
     fill.add_interior(tile.origin, bits);
     return bits;
 }
-BitGrid interior(const Mesh& mesh, const Region& region) {
-    return interior(SolidFill(lattice_surface(mesh, 1 << region.level), region), region);
+BitGrid interior(const Mesh& mesh, const Region& region, SolidRule rule = SolidRule::winding) {
+    return interior(SolidFill(lattice_surface(mesh, 1 << region.level), region, {.rule = rule}), region);
 }
 
 BitGrid surface_bits(const Mesh& mesh, const Region& region) {
@@ -98,6 +98,63 @@ TEST(SolidFill, TellsNestedShellsCavitiesAndOverlapsApart) {
     EXPECT_EQ(voxels(joined(at(4, 14), at(8, 20))), 10U * 10U * 10U + 12U * 12U * 12U - 6U * 6U * 6U)
         << "overlapping shells are united";
     EXPECT_EQ(voxels(joined(at(4, 14), at(14, 20))), 10U * 10U * 10U + 6U * 6U * 6U) << "shells that touch";
+}
+
+TEST(SolidFill, ByParityCountsCrossingsAloneSoThatOverlapsAndNestedShellsAreEmpty) {
+    Random random(21);
+    const Region region = cube(5);
+    const std::int64_t side = region.voxel_side();
+    const auto at = [&](std::int64_t low, std::int64_t high) {
+        return box(glm::i64vec3(low * side), glm::i64vec3(high * side), random);
+    };
+    const auto voxels = [&](const Mesh& mesh) { return interior(mesh, region, SolidRule::parity).count(); };
+    const auto cube_of = [](std::uint64_t length) { return length * length * length; };
+    for (const bool flip : {false, true}) {
+        const auto other = [&](const Mesh& mesh) { return flip ? turned(mesh) : mesh; };
+        EXPECT_EQ(voxels(other(at(4, 24))), cube_of(20));
+        EXPECT_EQ(voxels(joined(at(4, 24), other(at(10, 16)))), cube_of(20) - cube_of(6));
+        EXPECT_EQ(voxels(joined(at(4, 14), other(at(8, 20)))), cube_of(10) + cube_of(12) - 2 * cube_of(6));
+        EXPECT_EQ(voxels(joined(at(4, 14), other(at(14, 20)))), cube_of(10) + cube_of(6));
+    }
+}
+
+TEST(SolidFill, ByParityDoesNotCareWhichWayFacesAreTurned) {
+    constexpr std::uint32_t seed = 22;
+    Random random(seed);
+    const Region region = cube(5);
+    for (int i = 0; i < 20; ++i) {
+        Mesh mesh = joined(random_tetrahedra(random, 3, 1), sphere(glm::dvec3(lattice_side * 0.5), 4e6, 2));
+        const BitGrid truth = interior(mesh, region, SolidRule::parity);
+        EXPECT_GT(truth.count(), 0U);
+        for (LatticeTriangle& t : mesh) {
+            if (random.between(0, 1) == 1) t = turned(t);
+        }
+        const SolidFill fill(lattice_surface(mesh, 32), region, {.rule = SolidRule::parity});
+        EXPECT_TRUE(fill.closed());
+        EXPECT_EQ(fill.doubtful_rows(), 0U);
+        EXPECT_TRUE(same_bits(interior(fill, region), truth)) << "seed " << seed << ", mesh " << i;
+        mesh.pop_back();
+        const SolidFill open(lattice_surface(mesh, 32), region, {.rule = SolidRule::parity});
+        EXPECT_FALSE(open.closed());
+    }
+}
+
+TEST(SolidFill, ByParityOfAMeshWithAHoleDoesNotLeak) {
+    const Region region = cube(6);
+    const Mesh whole = sphere(glm::dvec3(lattice_side * 0.5), lattice_side * 0.45, 2);
+    const BitGrid truth = interior(whole, region, SolidRule::parity);
+    Mesh mesh = whole;
+    mesh.erase(mesh.begin() + 5);
+    const SolidFill fill(lattice_surface(mesh, 64), region, {.rule = SolidRule::parity});
+    EXPECT_GT(fill.doubtful_rows(), 0U);
+    const BitGrid ours = interior(fill, region);
+    std::uint64_t lost = 0;
+    (void)where(region, [&](const glm::ivec3& v) {
+        EXPECT_FALSE(ours.at(v) && !truth.at(v)) << "filled outside";
+        lost += truth.at(v) && !ours.at(v) ? 1U : 0U;
+        return false;
+    });
+    EXPECT_LT(lost, truth.count() / 50);
 }
 
 TEST(SolidFill, FillsASphereAsItsFormulaSays) {
@@ -347,13 +404,13 @@ TEST(SolidFill, SaysWhatWouldFitBeforeItTakesTooMuch) {
     const Region region = cube(8);
     EXPECT_EQ(SolidFill(surface, region).size_bytes(), 256U * 256U * (3U * 4U) + 256U * 256U / 8U);
     try {
-        const SolidFill fill(surface, region, 700000);
+        const SolidFill fill(surface, region, {.memory_bytes = 700000});
         ADD_FAILURE() << "it fitted";
     } catch (const Error& error) {
         EXPECT_EQ(error.fault(), Fault::memory);
         EXPECT_EQ(error.way_out(), "240 x 240 x 240 would fit");
     }
-    EXPECT_THROW(SolidFill(surface, region, 1000), Error);
+    EXPECT_THROW(SolidFill(surface, region, {.memory_bytes = 1000}), Error);
 }
 
 /// A snapshot of one closed box, |x|, |y|, |z| <= 1, with copies at some places.

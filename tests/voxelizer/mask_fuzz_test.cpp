@@ -53,7 +53,7 @@ MaskedScene Trial::scene() const {
             corners[i] = glm::vec3(t.corners[i]) / float(steps);
             texcoords[i] =
                 glm::vec2(glm::dvec2(t.texcoords[i]) / (glm::dvec2(width, height) * double(TEXEL_UNITS)));
-            if (has_vertex_alphas) out.primitive.colors.push_back({255, 255, 255, t.alphas[i]});
+            if (has_vertex_alphas) out.primitive.colors.push_back({65535, 65535, 65535, t.alphas[i]});
         }
         out.add(corners, texcoords);
     }
@@ -86,7 +86,7 @@ bool Trial::shows(ClippedTriangle<Int128> in_voxel, const Triangle& t) const {
             in_texel.keep_at_least(u, column * TEXEL_UNITS);
             in_texel.keep_at_most(u, (column + 1) * TEXEL_UNITS);
             in_texel.keep_at_least({alpha * t.alphas[0], alpha * t.alphas[1], alpha * t.alphas[2]},
-                                   cutoff * 255);
+                                   cutoff * 65535);
             if (!in_texel.empty()) return true;
         }
     }
@@ -135,7 +135,7 @@ Trial::Triangle random_triangle(Random& random, const Trial& trial) {
         const glm::ivec2 texels = glm::ivec2(glm::i64vec2(random.point(-6, 9)));
         t.texcoords[i] = texels * TEXEL_UNITS;
         if (!on_texels) t.texcoords[i] += glm::ivec2(glm::i64vec2(random.point(-200, 200)));
-        t.alphas[i] = trial.has_vertex_alphas ? int(random.between(0, 255)) : 255;
+        t.alphas[i] = trial.has_vertex_alphas ? int(random.between(0, 65535)) : 65535;
     }
     if (kind == 0) t.corners[2] = t.corners[1];
     if (kind == 1) t.corners[1] = t.corners[2] = t.corners[0];

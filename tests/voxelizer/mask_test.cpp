@@ -103,7 +103,8 @@ TEST_F(MaskTest, VertexAlphasAreExact) {
         scene.add({random_corner(random, false), random_corner(random, false), random_corner(random, false)},
                   {glm::vec2(0.0F), glm::vec2(1.7F, 0.3F), glm::vec2(0.2F, 1.6F)});
         for (int corner = 0; corner < 3; ++corner) {
-            scene.primitive.colors.push_back({255, 255, 255, i < 2 ? 180 : int(random.between(0, 255))});
+            scene.primitive.colors.push_back(
+                {65535, 65535, 65535, i < 2 ? 180 * 257 : int(random.between(0, 65535))});
         }
     }
     expect_exact(scene, 16, "vertex alpha");
@@ -113,7 +114,8 @@ TEST_F(MaskTest, VertexAlphasWithoutTextureAreExact) {
     MaskedScene scene(1, 1, {255}, scenes::Wrap::repeat, scenes::Wrap::repeat);
     scene.scene.materials[0].texture = -1;
     scene.add({glm::vec3(0.1F, 0.1F, 0.5F), glm::vec3(0.9F, 0.1F, 0.5F), glm::vec3(0.1F, 0.9F, 0.5F)}, {});
-    scene.primitive.colors = {{255, 255, 255, 255}, {255, 255, 255, 0}, {255, 255, 255, 0}};
+    scene.primitive.colors = {
+        {65535, 65535, 65535, 65535}, {65535, 65535, 65535, 0}, {65535, 65535, 65535, 0}};
     expect_exact(scene, 16, "vertex alpha alone");
     const BitGrid bits = voxelize(scene.surface(16));
     EXPECT_TRUE(bits.at({2, 2, 8}));
@@ -222,7 +224,7 @@ TEST(ExactMask, CountsEveryPointOfATexelThatPasses) {
         std::array<glm::vec2, 3> texcoords;
         for (glm::vec2& t : texcoords)
             t = {float(random.between(0, 1023)) / 1024, float(random.between(0, 1023)) / 1024};
-        const ExactMask mask(positions, texcoords, {0xFFFFFFFFU, 0xFFFFFFFFU, 0xFFFFFFFFU}, material, texels);
+        const ExactMask mask(positions, texcoords, {65535, 65535, 65535}, material, texels);
         const std::int64_t a = random.between(0, 64);
         const std::int64_t b = random.between(0, 64 - a);
         const std::array<std::int64_t, 3> weights = {a, b, 64 - a - b};

@@ -12,6 +12,7 @@
 #include "tests/support/masked_scene.h"
 #include "tests/support/scratch_folder.h"
 #include "voxelizer/files/write_npy.h"
+#include "voxelizer/surface/surface_attributes.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -152,6 +153,17 @@ TEST(BuildSurface, LeavesOutWhatMissesTheCubeAndSetsFarTrianglesApart) {
     EXPECT_EQ(surface.far_triangles.size(), 1U);
 }
 
+TEST(BuildSurface, VerticesThatNothingUsesMayLieAnywhere) {
+    OneMesh mesh;
+    mesh.primitive.positions = {{1e38F, 0, 0}, {1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {0, -1e30F, 0}};
+    mesh.primitive.indices = {1, 2, 3};
+    const Surface surface = mesh.surface(unit_grid(16));
+    EXPECT_EQ(surface.triangle_count, 1U);
+    EXPECT_EQ(surface.chunks[0].positions.size(), 3U);
+    mesh.primitive.indices = {1, 2, 4};
+    EXPECT_THROW((void)mesh.surface(unit_grid(16)), Error);
+}
+
 TEST(BuildSurface, FarFromTheOriginNothingIsLost) {
     for (const double offset : {1e6, 1e8}) {
         OneMesh mesh;
@@ -190,14 +202,16 @@ TEST(BuildSurface, CarriesAttributesWhenAsked) {
     mesh.primitive.positions = {{1, 1, 1}, {2, 1, 1}, {1, 2, 1}};
     mesh.primitive.normals = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}};
     mesh.primitive.texcoords = {{0.5F, 0.25F}, {1, 1}, {0, 0}};
-    mesh.primitive.colors = {{10, 20, 30, 40}, {255, 255, 255, 255}, {0, 0, 0, 255}};
+    mesh.primitive.colors = {{10, 20000, 300, 40000}, {65535, 65535, 65535, 65535}, {0, 0, 0, 65535}};
     mesh.primitive.indices = {0, 1, 2};
     EXPECT_TRUE(mesh.surface(unit_grid(16)).chunks[0].attributes.empty());
     const Surface surface = mesh.surface(unit_grid(16), {glm::dmat4(1.0)}, true);
     ASSERT_EQ(surface.chunks[0].attributes.size(), 3U);
     EXPECT_TRUE(surface.has_color);
-    EXPECT_EQ(surface.chunks[0].attributes[0].color, 10U | 20U << 8 | 30U << 16 | 40U << 24);
-    EXPECT_EQ(surface.chunks[0].attributes[0].texcoord, glm::vec2(0.5F, 0.25F));
+    EXPECT_EQ(surface.chunks[0].attributes[0].red_green, 10U | 20000U << 16);
+    EXPECT_EQ(surface.chunks[0].attributes[0].blue_alpha, 300U | 40000U << 16);
+    EXPECT_EQ(alpha_of(surface.chunks[0].attributes[0]), 40000);
+    EXPECT_EQ(texcoord_of(surface.chunks[0].attributes[0]), glm::vec2(0.5F, 0.25F));
     for (const interop::SurfaceAttributes& attributes : surface.chunks[0].attributes)
         EXPECT_NE(attributes.normal, 0U);
 }

@@ -100,11 +100,12 @@ TEST_F(TilesTest, FilledSolidHaveTheBitsOfTheWholeFilled) {
         fill.add_interior(glm::ivec3(0), truth);
         TriangleIndex index(surface);
         Collector collector(surface.grid);
-        SolidTiles solid(
-            fill, surface.grid, [&](VoxelTile&& tile) { collector.add(tile); }, side);
+        SolidTiles solid(surface, surface.grid, {}, side);
+        const TileSink sink = [&](VoxelTile&& tile) { collector.add(tile); };
         (void)voxelize_tiles(voxelizer(), on_gpu, index, surface.grid,
-                             [&](VoxelTile&& tile) { solid.add(std::move(tile)); }, {}, {.tile_side = side});
-        solid.finish();
+                             [&](VoxelTile&& tile) { solid.add(std::move(tile), sink); }, {},
+                             {.tile_side = side});
+        solid.finish(sink);
         EXPECT_TRUE(same_bits(collector.whole, truth)) << to_string(shape);
         EXPECT_EQ(solid.occupied(), truth.count()) << to_string(shape);
         if (shape == shapes[0]) {

@@ -42,7 +42,7 @@ struct Painted {
         primitive.indices.push_back(std::uint32_t(primitive.positions.size()));
         primitive.positions.push_back(position);
         if (with_normals) primitive.normals.push_back(normal);
-        primitive.colors.emplace_back(color, 255);
+        primitive.colors.emplace_back(glm::u16vec3(color) * std::uint16_t(257), 65535);
         primitive.texcoords.push_back(texcoord);
     }
     void reverse() {
@@ -67,7 +67,7 @@ struct Painted {
                 triangle.corners.push_back(
                     {(glm::dvec3(primitive.positions[v]) - grid.origin) / grid.voxel_size,
                      with_normals ? glm::dvec3(primitive.normals[v]) : glm::dvec3(0.0),
-                     glm::dvec3(primitive.colors[v]) / 255.0, glm::dvec2(primitive.texcoords[v])});
+                     glm::dvec3(primitive.colors[v]) / 65535.0, glm::dvec2(primitive.texcoords[v])});
             }
             if (!with_normals) {
                 const auto& c = triangle.corners;
@@ -239,7 +239,7 @@ TEST_F(VoxelAttributesTest, WhatAMaskCutsAwayLendsNoColour) {
     }
     Painted painted = random_triangles(6, 80, true);
     painted.use_image(side, side, rgba, scenes::AlphaMode::mask);
-    std::ranges::fill(painted.primitive.colors, glm::u8vec4(255));
+    std::ranges::fill(painted.primitive.colors, glm::u16vec4(65535));
     for (const int resolution : {16, 64, 200}) {
         const Result result = gather(painted, unit_cube(resolution));
         ASSERT_GT(result.attributes.colors.size(), 100U);
@@ -248,6 +248,19 @@ TEST_F(VoxelAttributesTest, WhatAMaskCutsAwayLendsNoColour) {
             ASSERT_NEAR(color.g, linear_of(180), 0.001) << "resolution " << resolution;
             ASSERT_GE(color.b, linear_of(100) - 0.001) << "resolution " << resolution;
         }
+    }
+}
+
+TEST_F(VoxelAttributesTest, DarkVertexColoursKeepSixteenBits) {
+    Painted painted = random_triangles(12, 60, true);
+    const glm::u16vec4 dark(100, 200, 1, 65535);
+    std::ranges::fill(painted.primitive.colors, dark);
+    painted.scene.materials[0] = {};
+    const Result result = gather(painted, unit_cube(32));
+    ASSERT_GT(result.attributes.colors.size(), 100U);
+    for (const glm::vec3& color : result.attributes.colors) {
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(color[c], double(dark[c]) / 65535.0, 2e-6) << "channel " << c;
     }
 }
 

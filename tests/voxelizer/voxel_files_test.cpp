@@ -297,7 +297,7 @@ TEST(VoxelFileNames, TellTheFormatOrWhichThereAre) {
 }
 
 /// An L of boxes in three colours, like nothing under any turn or mirror.
-scenes::Primitive box(const glm::vec3& low, const glm::vec3& high, const glm::u8vec4& color) {
+scenes::Primitive box(const glm::vec3& low, const glm::vec3& high, const glm::u16vec4& color) {
     scenes::Primitive primitive;
     for (int axis = 0; axis < 3; ++axis) {
         for (const bool top : {false, true}) {
@@ -325,9 +325,9 @@ class VoxelFileScenes : public GlTest {};
 TEST_F(VoxelFileScenes, AnAsymmetricSceneStandsWhereItIs) {
     const scenes::Scene scene;
     const std::vector<scenes::Primitive> boxes = {
-        box({10.2F, -4.9F, 7.1F}, {11.7F, -4.2F, 13.2F}, {255, 0, 0, 255}),
-        box({10.2F, -4.2F, 7.1F}, {10.7F, -1.8F, 7.9F}, {0, 128, 0, 255}),
-        box({11.2F, -4.2F, 12.5F}, {11.7F, -3.9F, 13.2F}, {0, 30, 255, 255})};
+        box({10.2F, -4.9F, 7.1F}, {11.7F, -4.2F, 13.2F}, {65535, 0, 0, 65535}),
+        box({10.2F, -4.2F, 7.1F}, {10.7F, -1.8F, 7.9F}, {0, 128 * 257, 0, 65535}),
+        box({11.2F, -4.2F, 12.5F}, {11.7F, -3.9F, 13.2F}, {0, 30 * 257, 65535, 65535})};
     scenes::Snapshot snapshot;
     for (const scenes::Primitive& primitive : boxes)
         snapshot.items.push_back({&primitive, primitive.positions, primitive.normals, glm::dmat4(1.0)});

@@ -9,6 +9,7 @@
 #include "shaders/interop/threads.h"
 #include "shaders/interop/voxelize.h"
 #include "voxelizer/surface/exact_mask.h"
+#include "voxelizer/surface/surface_attributes.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -122,14 +123,14 @@ std::vector<glm::ivec3> decide_on_cpu(const std::vector<MaskCandidate>& candidat
         const glm::uvec3& vertices = triangle.vertices;
         std::array<glm::i64vec3, 3> corners;
         std::array<glm::vec2, 3> texcoords;
-        std::array<std::uint32_t, 3> colors{};
+        std::array<std::uint16_t, 3> alphas{};
         for (int corner = 0; corner < 3; ++corner) {
             const auto& p = positions[vertices[corner]];
             corners[std::size_t(corner)] = {p[0], p[1], p[2]};
-            texcoords[std::size_t(corner)] = attributes[vertices[corner]].texcoord;
-            colors[std::size_t(corner)] = attributes[vertices[corner]].color;
+            texcoords[std::size_t(corner)] = texcoord_of(attributes[vertices[corner]]);
+            alphas[std::size_t(corner)] = alpha_of(attributes[vertices[corner]]);
         }
-        const ExactMask mask(corners, texcoords, colors, materials[triangle.material], texels);
+        const ExactMask mask(corners, texcoords, alphas, materials[triangle.material], texels);
         is_surface[i] = mask.touches(glm::i64vec3(candidates[i].voxel) * side, side) ? 1 : 0;
     });
     std::vector<glm::ivec3> voxels;

@@ -25,15 +25,16 @@ bool is_whole(Row row) {
 }
 
 /// Calls visit(first, end, whole) for each stretch of a row that it says is inside: by winding if the row is
-/// whole, else by parity.
+/// whole, else by parity. To SolidRule::parity every row is whole: the odd ones have no crossings.
 template <typename Visit>
-void visit_inside(Row row, const Visit& visit) {
-    const bool whole = is_whole(row);
+void visit_inside(Row row, SolidRule rule, const Visit& visit) {
+    const bool by_winding = rule == SolidRule::winding && is_whole(row);
+    const bool whole = rule == SolidRule::parity || by_winding;
     int depth = 0;
     int since = 0;
     for (const RowCrossings::Event& event : row) {
         const int before = depth;
-        depth = whole ? depth + event.winding() : 1 - depth;
+        depth = by_winding ? depth + event.winding() : 1 - depth;
         if (before == 0) since = event.voxel();
         if (depth == 0 && since < event.voxel()) visit(since, event.voxel(), whole);
     }
@@ -44,9 +45,9 @@ struct Verdict {
     bool inside = false;
     bool whole = false;
 };
-Verdict verdict_on(Row row, int voxel) {
+Verdict verdict_on(Row row, SolidRule rule, int voxel) {
     Verdict verdict;
-    visit_inside(row, [&](int first, int end, bool whole) {
+    visit_inside(row, rule, [&](int first, int end, bool whole) {
         if (first <= voxel && voxel < end) verdict = {true, whole};
     });
     return verdict;
@@ -76,32 +77,57 @@ std::uint64_t hash_of(const glm::i64vec3& p, const glm::i64vec3& q, std::uint64_
     return seed;
 }
 
-/// Whether each edge is used as often in one direction as in the other: the hashes of edges add up to 0, each
-/// with the sign of its direction.
-bool is_closed(const Surface& surface) {
-    std::atomic<std::uint64_t> first{0};
-    std::atomic<std::uint64_t> second{0};
-    for_each_triangle(surface, [&](const std::array<glm::i64vec3, 3>& corners) {
-        std::uint64_t a = 0;
-        std::uint64_t b = 0;
+/// Sums over the edges of a surface, in any order: 0 if each edge is used as often as the rule wants.
+class EdgeSums {
+public:
+    explicit EdgeSums(SolidRule rule) : rule_(rule) {}
+
+    void add(const std::array<glm::i64vec3, 3>& corners) {
+        std::array<std::uint64_t, 2> here{};
         for (std::size_t i = 0; i < 3; ++i) {
             const glm::i64vec3& p = corners[i];
             const glm::i64vec3& q = corners[(i + 1) % 3];
             if (p == q) continue;
             const bool forward = std::tuple(p.x, p.y, p.z) < std::tuple(q.x, q.y, q.z);
-            const std::uint64_t one = forward ? hash_of(p, q, 1) : 0 - hash_of(q, p, 1);
-            const std::uint64_t other = forward ? hash_of(p, q, 2) : 0 - hash_of(q, p, 2);
-            a += one;
-            b += other;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const std::uint64_t hash = forward ? hash_of(p, q, k + 1) : hash_of(q, p, k + 1);
+                if (rule_ == SolidRule::parity) {
+                    here[k] ^= hash;
+                } else {
+                    here[k] += forward ? hash : 0 - hash;
+                }
+            }
         }
-        first.fetch_add(a, std::memory_order_relaxed);
-        second.fetch_add(b, std::memory_order_relaxed);
-    });
-    return first == 0 && second == 0;
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (rule_ == SolidRule::parity) {
+                sums_[k].fetch_xor(here[k], std::memory_order_relaxed);
+            } else {
+                sums_[k].fetch_add(here[k], std::memory_order_relaxed);
+            }
+        }
+    }
+    [[nodiscard]] bool are_zero() const { return sums_[0] == 0 && sums_[1] == 0; }
+
+private:
+    SolidRule rule_;
+    std::array<std::atomic<std::uint64_t>, 2> sums_{};
+};
+
+/// Whether each edge is used as often in one direction as in the other: the hashes of edges add up to 0, each
+/// with the sign of its direction. By parity, whether each is used an even number of times: the hashes cancel
+/// each other bit by bit.
+bool is_closed(const Surface& surface, SolidRule rule) {
+    EdgeSums sums(rule);
+    for_each_triangle(surface, [&](const std::array<glm::i64vec3, 3>& corners) { sums.add(corners); });
+    return sums.are_zero();
 }
 
-/// Rows of a region along an axis that are not whole.
-std::uint64_t count_doubtful(const RowCrossings& rows, const glm::ivec3& size, int axis) {
+bool is_doubtful(const RowCrossings& rows, const glm::ivec3& voxel, SolidRule rule) {
+    return rows.is_odd(voxel) || (rule == SolidRule::winding && !is_whole(rows.row(voxel)));
+}
+
+/// Doubtful rows of a region along an axis.
+std::uint64_t count_doubtful(const RowCrossings& rows, const glm::ivec3& size, int axis, SolidRule rule) {
     const int u = (axis + 1) % 3;
     const int v = (axis + 2) % 3;
     std::atomic<std::uint64_t> count{0};
@@ -110,7 +136,7 @@ std::uint64_t count_doubtful(const RowCrossings& rows, const glm::ivec3& size, i
         glm::ivec3 voxel(0);
         voxel[v] = at_v;
         for (voxel[u] = 0; voxel[u] < size[u]; ++voxel[u])
-            here += rows.is_odd(voxel) || !is_whole(rows.row(voxel)) ? 1 : 0;
+            here += is_doubtful(rows, voxel, rule) ? 1 : 0;
         count += here;
     });
     return count;
@@ -118,15 +144,18 @@ std::uint64_t count_doubtful(const RowCrossings& rows, const glm::ivec3& size, i
 
 }  // namespace
 
-SolidFill::SolidFill(const Surface& surface, const Region& whole, std::size_t memory_bytes)
-    : whole_(whole), along_x_(surface, whole, 0, memory_bytes) {
-    if (is_closed(surface)) return;
-    std::size_t left = memory_bytes - along_x_.size_bytes();
+SolidFill::SolidFill(const Surface& surface, const Region& whole, const SolidOptions& options)
+    : whole_(whole), rule_(options.rule), along_x_(surface, whole, 0, options.memory_bytes) {
+    if (rule_ == SolidRule::outside)
+        throw Error(Fault::usage, "solid fill", "what the outside reaches is not found by crossings");
+    if (is_closed(surface, rule_)) return;
+    std::size_t left = options.memory_bytes - along_x_.size_bytes();
     along_y_.emplace(surface, whole, 1, left);
     left -= along_y_->size_bytes();
     along_z_.emplace(surface, whole, 2, left);
-    doubtful_rows_ = count_doubtful(along_x_, whole.size, 0) + count_doubtful(*along_y_, whole.size, 1) +
-                     count_doubtful(*along_z_, whole.size, 2);
+    doubtful_rows_ = count_doubtful(along_x_, whole.size, 0, rule_) +
+                     count_doubtful(*along_y_, whole.size, 1, rule_) +
+                     count_doubtful(*along_z_, whole.size, 2, rule_);
 }
 
 std::uint64_t SolidFill::row_count() const {
@@ -156,10 +185,39 @@ void SolidFill::add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const
     });
 }
 
+bool SolidFill::is_doubtful_cavity(const glm::ivec3& root_voxel) const {
+    const glm::ivec3 voxel = root_voxel - whole_.origin;
+    if (is_doubtful(along_x_, voxel, rule_)) return true;
+    if (!closed() && (is_doubtful(*along_y_, voxel, rule_) || is_doubtful(*along_z_, voxel, rule_)))
+        return true;
+    int winding = 0;
+    int at_voxel = 0;
+    bool positive = false;
+    bool negative = false;
+    bool cancelled_before = false;
+    bool cancelled_behind = false;
+    const Row row = along_x_.row(voxel);
+    for (std::size_t i = 0; i < row.size();) {
+        const int place = row[i].voxel();
+        const int before = winding;
+        for (; i < row.size() && row[i].voxel() == place; ++i)
+            winding += row[i].winding();
+        positive = positive || winding > 0;
+        negative = negative || winding < 0;
+        if (place <= voxel.x) at_voxel = winding;
+        if (before == 0 && winding == 0) {
+            cancelled_before = cancelled_before || place <= voxel.x;
+            cancelled_behind = cancelled_behind || place > voxel.x;
+        }
+    }
+    return (positive && negative) || (cancelled_before && cancelled_behind) ||
+           (rule_ == SolidRule::parity && at_voxel != 0);
+}
+
 void SolidFill::fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const {
     for (int y = 0; y < tile.size.y; ++y) {
         std::uint32_t* const words = &tile.words[tile.word_index(0, y, z)];
-        visit_inside(along_x_.row(low + glm::ivec3(0, y, z)), [&](int first, int end, bool /*whole*/) {
+        visit_inside(along_x_.row(low + glm::ivec3(0, y, z)), rule_, [&](int first, int end, bool /*whole*/) {
             set_bits(words, std::max(first - low.x, 0), std::min(end - low.x, tile.size.x));
         });
     }
@@ -175,7 +233,7 @@ void SolidFill::vote_on_slice(const glm::ivec3& low, int z, BitGrid& tile) const
     Votes by_y = by_x;
     for (int y = 0; y < tile.size.y; ++y) {
         const std::size_t word = by_x.inside.word_index(0, y, 0);
-        visit_inside(along_x_.row(low + glm::ivec3(0, y, z)), [&](int first, int end, bool whole) {
+        visit_inside(along_x_.row(low + glm::ivec3(0, y, z)), rule_, [&](int first, int end, bool whole) {
             const int from = std::max(first - low.x, 0);
             const int to = std::min(end - low.x, tile.size.x);
             set_bits(&by_x.inside.words[word], from, to);
@@ -183,7 +241,7 @@ void SolidFill::vote_on_slice(const glm::ivec3& low, int z, BitGrid& tile) const
         });
     }
     for (int x = 0; x < tile.size.x; ++x) {
-        visit_inside(along_y_->row(low + glm::ivec3(x, 0, z)), [&](int first, int end, bool whole) {
+        visit_inside(along_y_->row(low + glm::ivec3(x, 0, z)), rule_, [&](int first, int end, bool whole) {
             for (int y = std::max(first - low.y, 0); y < std::min(end - low.y, tile.size.y); ++y) {
                 by_y.inside.set({x, y, 0});
                 if (whole) by_y.by_whole.set({x, y, 0});
@@ -201,7 +259,7 @@ void SolidFill::vote_on_slice(const glm::ivec3& low, int z, BitGrid& tile) const
             const auto row = int(word) / by_x.inside.words_per_row();
             const glm::ivec3 voxel =
                 low + glm::ivec3(int(word) % by_x.inside.words_per_row() * 32 + bit, row, z);
-            const Verdict by_z = verdict_on(along_z_->row(voxel), voxel.z);
+            const Verdict by_z = verdict_on(along_z_->row(voxel), rule_, voxel.z);
             const bool second = by_z.whole && (one >> bit & 1U) != 0;
             if (by_z.inside && (second || (both >> bit & 1U) != 0)) found |= 1U << bit;
         }

@@ -14,8 +14,21 @@
 
 namespace cairn::voxelizer {
 
-/// The inside of closed meshes, exactly: the voxels whose centre the surface winds around. A solid is these
-/// bits together with the surface's own. Runs on the CPU, on all cores.
+/// What counts as the inside of a surface.
+enum class SolidRule : std::uint8_t {
+    winding,  ///< what the surface winds around, in either direction
+    parity,   ///< what the surface is crossed an odd number of times to come out of; faces may be turned
+    outside,  ///< what the outside cannot reach; faces may also be doubled
+};
+
+struct SolidOptions {
+    SolidRule rule = SolidRule::winding;
+    /// What crossings may take, and what the flood from outside may take.
+    std::size_t memory_bytes = std::size_t(1) << 30;
+};
+
+/// The inside of closed meshes by counting crossings, exactly: the voxels whose centre the surface winds
+/// around. A solid is these bits together with the surface's own. Runs on the CPU, on all cores.
 ///
 /// A row of voxels along x crosses the surface a number of times; the signs of the crossings up to a centre
 /// add up to its winding number, and inside is where it is not 0. So overlapping shells give their union, a
@@ -36,24 +49,39 @@ namespace cairn::voxelizer {
 /// parity; where rows come out whole by chance, because as many faces are turned one way as the other, gaps
 /// between parts may be filled.
 ///
+/// SolidRule::parity looks at the number of crossings alone: inside is where it is odd. A shell within
+/// another is a cavity, and so is the overlap of two, whichever way they are turned. A mesh is closed when
+/// each edge is used an even number of times; a row is doubtful when it is crossed an odd number of times.
+///
 /// Build the surface with SurfaceOptions::outside. Without it, a grid that cuts through the scene
 /// (grid_over()) has rows that count as doubtful only because a crossing outside the grid is unknown.
 class SolidFill {
 public:
-    static constexpr std::size_t default_memory_bytes = std::size_t(1) << 30;
-
-    /// @param whole         the region that all tiles lie in
-    /// @param memory_bytes  what the crossings may take: 4 bytes per row, and 4 per crossing of the rows
-    ///                      that are crossed an even number of times
-    /// @throws Error (Fault::memory) if the crossings take more; the message says what would fit.
-    SolidFill(const Surface& surface, const Region& whole, std::size_t memory_bytes = default_memory_bytes);
+    /// @param whole    the region that all tiles lie in
+    /// @param options  SolidRule::outside is not among the rules of this class, but that of Outside.
+    /// Crossings
+    ///                 take 4 bytes per row, and 4 per crossing of the rows that are crossed an even number
+    ///                 of times.
+    /// @throws Error  Fault::memory if the crossings take more than they may; the message says what would
+    ///                fit. Fault::usage if the rule is SolidRule::outside.
+    SolidFill(const Surface& surface, const Region& whole, const SolidOptions& options = {});
 
     /// Sets the bits of voxels that are inside.
     /// @param tile_origin  voxel of the root cube, as Region::origin; the tile lies within `whole`
     /// @throws Error (Fault::usage) if the tile does not lie within `whole`.
     void add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const;
 
-    /// Whether the mesh is closed. Decided by a sum of 128-bit hashes over its edges.
+    /// Whether crossings give reason to doubt that a voxel that is not inside, though the surface encloses
+    /// it, is a cavity:
+    ///   - one of the rows that were asked is doubtful; or along x
+    ///   - the crossings cancel each other in pairs between the same two voxels, before the voxel and behind
+    ///     it: faces that are doubled, or walls thinner than a voxel;
+    ///   - winding numbers of both signs occur: parts are turned against each other;
+    ///   - by SolidRule::parity, the winding number is not 0: parts that are nested or overlap.
+    /// @param voxel  as tile_origin of add_interior()
+    [[nodiscard]] bool is_doubtful_cavity(const glm::ivec3& voxel) const;
+
+    /// Whether the mesh is closed, as the rule means it. Decided by a sum of 128-bit hashes over its edges.
     [[nodiscard]] bool closed() const { return !along_y_; }
     /// Doubtful rows along all three axes, out of row_count() rows.
     [[nodiscard]] std::uint64_t doubtful_rows() const { return doubtful_rows_; }
@@ -66,6 +94,7 @@ private:
     void vote_on_slice(const glm::ivec3& low, int z, BitGrid& tile) const;
 
     Region whole_;
+    SolidRule rule_;
     RowCrossings along_x_;
     std::optional<RowCrossings> along_y_, along_z_;  ///< only if the mesh is not closed
     std::uint64_t doubtful_rows_ = 0;

@@ -70,11 +70,11 @@ Range steps_touched(const std::vector<Wide3>& corners, const std::array<std::int
 }  // namespace
 
 ExactMask::ExactMask(const std::array<glm::i64vec3, 3>& positions, const std::array<glm::vec2, 3>& texcoords,
-                     const std::array<std::uint32_t, 3>& colors, const interop::SurfaceMaterial& material,
+                     const std::array<std::uint16_t, 3>& alphas, const interop::SurfaceMaterial& material,
                      std::span<const std::uint32_t> texels)
     : positions_(positions), material_(material), texels_(texels) {
     for (std::size_t i = 0; i < 3; ++i)
-        alphas_[i] = colors[i] >> 24;
+        alphas_[i] = alphas[i];
     const glm::dvec2 size(std::max(material.width, 1U), std::max(material.height, 1U));
     const glm::dvec2 period =
         glm::floor(glm::dvec2(glm::min(glm::min(texcoords[0], texcoords[1]), texcoords[2])));
@@ -122,7 +122,7 @@ bool ExactMask::touches(const glm::i64vec3& low, std::int64_t side) const {
         for (std::int64_t column = columns.first; column <= columns.last; ++column) {
             const std::int64_t alpha = alpha_at(column, row) * 256;
             const Line passes = at_least({alpha * alphas_[0], alpha * alphas_[1], alpha * alphas_[2]},
-                                         std::int64_t(material_.alpha_threshold));
+                                         std::int64_t(material_.alpha_threshold) * 257);
             if (passes.x < 0 && passes.y < 0 && passes.z < 0) continue;
             std::vector<Line> all = lines;
             all.push_back(at_least(u, column * texel_side_));

@@ -22,9 +22,10 @@ namespace cairn::voxelizer {
 class ExactMask {
 public:
     /// @param positions  lattice units, within +-2^40
+    /// @param alphas     of the vertices, 65535 = 1
     /// @param texels     texels of all images; must outlive this object
     ExactMask(const std::array<glm::i64vec3, 3>& positions, const std::array<glm::vec2, 3>& texcoords,
-              const std::array<std::uint32_t, 3>& colors, const interop::SurfaceMaterial& material,
+              const std::array<std::uint16_t, 3>& alphas, const interop::SurfaceMaterial& material,
               std::span<const std::uint32_t> texels);
 
     /// Whether the triangle's part inside a voxel is surface.

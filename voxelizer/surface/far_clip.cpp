@@ -6,6 +6,7 @@
 
 #include "shaders/interop/grid.h"
 #include "shaders/interop/surface.h"
+#include "voxelizer/surface/surface_attributes.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -40,20 +41,16 @@ Polygon part_in_box(const FarTriangle& triangle, const glm::dvec3& low, const gl
 void add_vertex(const FarTriangle& triangle, const glm::dvec3& weights, SurfaceChunk& out) {
     glm::dvec3 position(0.0);
     glm::dvec2 texcoord(0.0);
-    std::uint32_t color = 0;
+    glm::dvec4 color(0.0);
     for (int i = 0; i < 3; ++i) {
         position += weights[i] * glm::dvec3(triangle.positions[std::size_t(i)]);
         texcoord += weights[i] * glm::dvec2(triangle.texcoords[std::size_t(i)]);
-    }
-    for (int shift = 0; shift < 32; shift += 8) {
-        double channel = 0.0;
-        for (int i = 0; i < 3; ++i)
-            channel += weights[i] * double(triangle.colors[std::size_t(i)] >> shift & 0xFFU);
-        color |= std::uint32_t(std::lround(std::clamp(channel, 0.0, 255.0))) << shift;
+        color += weights[i] * glm::dvec4(triangle.colors[std::size_t(i)]);
     }
     out.positions.push_back(
         {int(std::lround(position.x)), int(std::lround(position.y)), int(std::lround(position.z))});
-    out.attributes.push_back({0, color, glm::vec2(texcoord)});
+    const glm::u16vec4 rounded(glm::round(glm::clamp(color, 0.0, 65535.0)));
+    out.attributes.push_back(surface_attributes(0, rounded, glm::vec2(texcoord)));
 }
 
 constexpr double range_low = -double(1 << LATTICE_BITS);

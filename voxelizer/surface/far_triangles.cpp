@@ -130,7 +130,7 @@ void mark_far_triangles(std::span<const FarTriangle> triangles,
         const glm::i64vec3 high = glm::min(rows.high(), glm::i64vec3(region.origin + region.size - 1));
         const interop::SurfaceMaterial& material = materials[triangle.material];
         const bool masked = (material.flags >> MATERIAL_MASK_BIT & 1U) != 0;
-        const ExactMask mask(triangle.positions, triangle.texcoords, triangle.colors, material, texels);
+        const ExactMask mask(triangle.positions, triangle.texcoords, triangle.alphas(), material, texels);
         // Slices of z share no word.
         tbb::parallel_for(low.z, high.z + 1, [&](std::int64_t z) {
             for (std::int64_t y = low.y; y <= high.y; ++y) {

@@ -13,6 +13,7 @@
 #include "scenes/snapshot.h"
 #include "shaders/interop/grid.h"
 #include "shaders/interop/surface.h"
+#include "voxelizer/surface/surface_attributes.h"
 #include "voxelizer/surface/surface_materials.h"
 
 namespace cairn::voxelizer {
@@ -79,9 +80,14 @@ public:
         if (options.unplaced) return;
         has_normals_ = !item_.normals.empty();
         normal_from_mesh_ = normal_from_mesh(item_.world_from_mesh);
-        lattice_.reserve(item_.vertex_count());
-        for (std::size_t vertex = 0; vertex < item_.vertex_count(); ++vertex)
-            lattice_.push_back(grid.lattice_from_world(item_.world(vertex)));
+        // Vertices that nothing uses may lie anywhere.
+        std::vector<bool> is_placed(item_.vertex_count());
+        lattice_.resize(item_.vertex_count());
+        for (const std::uint32_t vertex : primitive_.indices) {
+            if (is_placed[vertex]) continue;
+            is_placed[vertex] = true;
+            lattice_[vertex] = grid.lattice_from_world(item_.world(vertex));
+        }
     }
 
     Part run() {
@@ -96,8 +102,8 @@ public:
             }
             add(vertices);
         }
-        for (const glm::u8vec4& color : primitive_.colors) {
-            part_.has_color = part_.has_color || color.r != 255 || color.g != 255 || color.b != 255;
+        for (const glm::u16vec4& color : primitive_.colors) {
+            part_.has_color = part_.has_color || glm::u16vec3(color) != glm::u16vec3(65535);
         }
         return std::move(part_);
     }
@@ -120,7 +126,7 @@ private:
         if (materials_.is_masked(primitive_.material)) {
             shown = materials_.shown(primitive_.material,
                                      {texcoord(vertices[0]), texcoord(vertices[1]), texcoord(vertices[2])},
-                                     {color(vertices[0]), color(vertices[1]), color(vertices[2])});
+                                     {color(vertices[0]).a, color(vertices[1]).a, color(vertices[2]).a});
             if (shown == Shown::nothing) return;
         }
         if (axes_apart > 0) {
@@ -153,9 +159,8 @@ private:
         return {rounded_texcoord(uv.x), rounded_texcoord(uv.y)};
     }
 
-    [[nodiscard]] std::uint32_t color(std::uint32_t vertex) const {
-        if (primitive_.colors.empty()) return 0xFFFFFFFFU;
-        return std::bit_cast<std::uint32_t>(primitive_.colors[vertex]);
+    [[nodiscard]] glm::u16vec4 color(std::uint32_t vertex) const {
+        return primitive_.colors.empty() ? glm::u16vec4(65535) : primitive_.colors[vertex];
     }
 
     /// The number of a vertex in the part; it is added at its first use.
@@ -169,7 +174,7 @@ private:
             if (options_.attributes) {
                 const std::uint32_t normal =
                     has_normals_ ? encode_normal(normal_from_mesh_ * glm::dvec3(item_.normals[vertex])) : 0;
-                part_.mesh.attributes.push_back({normal, color(vertex), texcoord(vertex)});
+                part_.mesh.attributes.push_back(surface_attributes(normal, color(vertex), texcoord(vertex)));
             }
         }
         return std::uint32_t(number);

@@ -53,8 +53,12 @@ struct SurfaceChunk {
 struct FarTriangle {
     std::array<glm::i64vec3, 3> positions;
     std::array<glm::vec2, 3> texcoords;
-    std::array<std::uint32_t, 3> colors;
+    std::array<glm::u16vec4, 3> colors;  ///< linear RGBA, 65535 = 1
     std::uint32_t material;
+
+    [[nodiscard]] std::array<std::uint16_t, 3> alphas() const {
+        return {colors[0].a, colors[1].a, colors[2].a};
+    }
 };
 
 /// The triangles of a snapshot on the lattice of a grid. Every voxelization method, the exact reference and
@@ -101,7 +105,7 @@ struct SurfaceOptions {
     std::uint32_t chunk_triangles = surface_chunk_triangles;
 };
 
-/// @throws Error  Fault::memory if the surface would not fit in memory; Fault::input if a vertex lies past
+/// @throws Error  Fault::memory if the surface would not fit in memory; Fault::usage if a vertex lies past
 ///                the lattice's limits.
 [[nodiscard]] Surface build_surface(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                                     const Grid& grid, const SurfaceOptions& options = {});

@@ -155,13 +155,14 @@ bool SurfaceMaterials::is_masked(int scene_material) const {
 }
 
 Shown SurfaceMaterials::shown(int scene_material, const std::array<glm::vec2, 3>& texcoords,
-                              const std::array<std::uint32_t, 3>& colors) const {
+                              const std::array<std::uint16_t, 3>& alphas) const {
     if (!is_masked(scene_material)) return Shown::whole;
     const Mask& mask = masks_[std::size_t(scene_material)];
     const interop::SurfaceMaterial& material = materials[std::size_t(scene_material) + 1];
-    const auto [lowest, highest] = std::minmax({colors[0] >> 24, colors[1] >> 24, colors[2] >> 24});
-    if (mask.highest_alpha * highest * 256 < material.alpha_threshold) return Shown::nothing;
-    if (mask.lowest_alpha * lowest * 256 >= material.alpha_threshold) return Shown::whole;
+    const auto [lowest, highest] = std::ranges::minmax(alphas);
+    const std::uint64_t threshold = std::uint64_t(material.alpha_threshold) * 257;
+    if (std::uint64_t(mask.highest_alpha) * highest * 256 < threshold) return Shown::nothing;
+    if (std::uint64_t(mask.lowest_alpha) * lowest * 256 >= threshold) return Shown::whole;
     return spans_too_much(texcoords, material) ? Shown::whole : Shown::cut;
 }
 

@@ -31,7 +31,7 @@ public:
 
     [[nodiscard]] bool is_masked(int scene_material) const;
     [[nodiscard]] Shown shown(int scene_material, const std::array<glm::vec2, 3>& texcoords,
-                              const std::array<std::uint32_t, 3>& colors) const;
+                              const std::array<std::uint16_t, 3>& alphas) const;
     /// Index into `materials`.
     [[nodiscard]] std::uint32_t number(int scene_material, Shown shown) const;
 

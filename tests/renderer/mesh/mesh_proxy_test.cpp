@@ -141,7 +141,7 @@ TEST_F(MeshProxy, AProxyShowsTheMiddleOfThreeSheetsAlone) {
         corners.insert(corners.end(), one.begin(), one.end());
     }
     scenes::Scene scene = triangles(corners);
-    const glm::u8vec4 colors[] = {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}};
+    const glm::u16vec4 colors[] = {{65535, 0, 0, 65535}, {0, 65535, 0, 65535}, {0, 0, 65535, 65535}};
     for (int i = 0; i < 18; ++i)
         scene.meshes[0].primitives[0].colors.push_back(colors[i / 6]);
     const scenes::Scene box = colored(box_corners({-2, -2, -0.5F}, {2, 2, 0.5F}), red);

@@ -10,6 +10,7 @@
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/produced_brick.h"
+#include "voxelizer/surface/surface_attributes.h"
 
 namespace cairn::renderer {
 namespace {
@@ -96,7 +97,8 @@ protected:
             triangles.push_back(random_triangle(random, lattice_side >> random.between(4, 10)));
         voxelizer::Surface out = lattice_surface(triangles, 4096);
         for (voxelizer::SurfaceChunk& chunk : out.chunks) {
-            chunk.attributes.assign(chunk.positions.size(), {0, 0xFFFFFFFFU, glm::vec2(0.0F)});
+            chunk.attributes.assign(chunk.positions.size(),
+                                    voxelizer::surface_attributes(0, glm::u16vec4(65535), glm::vec2(0.0F)));
             for (interop::SurfaceTriangle& triangle : chunk.triangles)
                 triangle.material = std::uint32_t(random.between(0, 1));
         }

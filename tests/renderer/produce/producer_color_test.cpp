@@ -8,6 +8,7 @@
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/produced_brick.h"
+#include "voxelizer/surface/surface_attributes.h"
 
 namespace cairn::renderer {
 namespace {
@@ -75,7 +76,7 @@ private:
         voxelizer::SurfaceChunk& chunk = surface_.chunks[0];
         const double voxel = double(1 << 21);
         chunk.positions.push_back({int(x * voxel), int(y * voxel), int(z * voxel)});
-        chunk.attributes.push_back({0, 0xFFFFFFFFU, glm::vec2(0.0F)});
+        chunk.attributes.push_back(voxelizer::surface_attributes(0, glm::u16vec4(65535), glm::vec2(0.0F)));
         return std::uint32_t(chunk.positions.size()) - 1;
     }
     void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -151,7 +152,8 @@ TEST_F(ProducedColor, TexelsComeThroughInEveryWrapMode) {
         sheets.set_texture(texels, mode << MATERIAL_WRAP_S_SHIFT);
         // A voxel is a texel wide, and the picture begins in the middle.
         sheets.set_attributes([](interop::SurfaceAttributes& attributes, double x) {
-            attributes.texcoord = {float(x / 4.0 - 1.0), 0.5F};
+            attributes.u = float(x / 4.0 - 1.0);
+            attributes.v = 0.5F;
         });
         const ProducedBrick brick = sheets.brick();
         for (int x = 0; x < 8; ++x) {
@@ -168,7 +170,8 @@ TEST_F(ProducedColor, VertexColoursAreInterpolated) {
     Sheets sheets;
     sheets.add(4.6, 0.0, 8.0, 0.0, 8.0, {1.0F, 0.5F, 0.0F});
     sheets.set_attributes([](interop::SurfaceAttributes& attributes, double x) {
-        attributes.color = x > 4.0 ? 0xFFFFFFFFU : 0xFF00FF00U;  // red from 0 to 1
+        attributes.red_green = x > 4.0 ? 0xFFFFFFFFU : 0xFFFF0000U;  // red from 0 to 1
+        attributes.blue_alpha = x > 4.0 ? 0xFFFFFFFFU : 0xFFFF0000U;
     });
     const ProducedBrick brick = sheets.brick();
     for (int x = 0; x < 8; ++x)
@@ -232,7 +235,8 @@ TEST_F(ProducedColor, AlphaMaskCutsSurfaceAway) {
                        1U << MATERIAL_MASK_BIT | 2U << MATERIAL_WRAP_S_SHIFT);
     sheets.surface().has_mask = true;
     sheets.set_attributes([](interop::SurfaceAttributes& attributes, double x) {
-        attributes.texcoord = {float(x / 7.0), 0.5F};  // the picture's second half begins at x = 3.5
+        attributes.u = float(x / 7.0);  // the picture's second half begins at x = 3.5
+        attributes.v = 0.5F;
     });
     const ProducedBrick brick = sheets.brick();
     expect_color(brick, {2, 4, 4}, red, 1.0, 1.0);

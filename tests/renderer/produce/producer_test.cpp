@@ -10,6 +10,7 @@
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "tests/support/produced_brick.h"
+#include "voxelizer/surface/surface_attributes.h"
 
 namespace cairn::renderer {
 namespace {
@@ -28,7 +29,8 @@ std::string to_string(const Tile& tile) {
 
 void add_attributes(voxelizer::Surface& surface) {
     for (voxelizer::SurfaceChunk& chunk : surface.chunks)
-        chunk.attributes.assign(chunk.positions.size(), {0, 0xFFFFFFFFU, glm::vec2(0.0F)});
+        chunk.attributes.assign(chunk.positions.size(),
+                                voxelizer::surface_attributes(0, glm::u16vec4(65535), glm::vec2(0.0F)));
 }
 
 interop::SurfaceMaterial colored(const glm::vec3& color) {

@@ -12,6 +12,7 @@
 #include "tests/support/lattice_surface.h"
 #include "tests/support/produced_brick.h"
 #include "voxelizer/methods/conservative_voxelizer.h"
+#include "voxelizer/surface/surface_attributes.h"
 #include "voxelizer/surface/wide_integer.h"
 
 namespace cairn::renderer {
@@ -57,7 +58,8 @@ std::vector<LatticeTriangle> random_triangles(const TreeShape& shape, int count,
 voxelizer::Surface surface_of(const std::vector<LatticeTriangle>& triangles) {
     voxelizer::Surface surface = lattice_surface(triangles, 4096);
     for (voxelizer::SurfaceChunk& chunk : surface.chunks)
-        chunk.attributes.assign(chunk.positions.size(), {0, 0xFFFFFFFFU, glm::vec2(0.0F)});
+        chunk.attributes.assign(chunk.positions.size(),
+                                voxelizer::surface_attributes(0, glm::u16vec4(65535), glm::vec2(0.0F)));
     return surface;
 }
 
