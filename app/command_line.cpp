@@ -84,7 +84,7 @@ void check_outputs_differ(const CLI::App& command) {
     }
 }
 
-void add_verbs(CLI::App& command, Work& chosen, void (*add_bench_verb)(CLI::App&, Work&)) {
+void add_verbs(CLI::App& command, Work& chosen, AddBench add_bench_verb) {
     add_info(command, chosen);
     add_voxelize(command, chosen);
     add_check(command, chosen);
@@ -92,12 +92,15 @@ void add_verbs(CLI::App& command, Work& chosen, void (*add_bench_verb)(CLI::App&
     add_view(command, chosen);
     add_shadow(command, chosen);
     add_export(command, chosen);
-    add_bench_verb(command, chosen);
+    if (add_bench_verb != nullptr)
+        add_bench_verb(command, chosen);
+    else
+        command.add_subcommand("bench", bench_description);  // for the help
 }
 
 }  // namespace
 
-Work read_command_line(const std::vector<std::string>& arguments, void (*add_bench_verb)(CLI::App&, Work&)) {
+Work read_command_line(const std::vector<std::string>& arguments, AddBench add_bench_verb) {
     const auto command = std::make_shared<CLI::App>(
         "Voxelizes glTF scenes on the GPU, and renders them through a bounded voxel cache.", "cairn");
     Work chosen;
@@ -107,6 +110,8 @@ Work read_command_line(const std::vector<std::string>& arguments, void (*add_ben
     command->get_formatter()->column_width(38);
     command->footer(footer());
     check_verb(*command, arguments.empty() ? nullptr : &arguments.front());
+    if (add_bench_verb == nullptr && !arguments.empty() && arguments.front() == "bench")
+        return bench_apart({arguments.begin() + 1, arguments.end()});
     std::vector<std::string> last_first(arguments.rbegin(), arguments.rend());  // the order that CLI11 takes
     try {
         command->parse(std::move(last_first));
@@ -123,7 +128,7 @@ Work read_command_line(const std::vector<std::string>& arguments, void (*add_ben
     return chosen;
 }
 
-int run_command(int argc, char** argv, void (*add_bench_verb)(CLI::App&, Work&)) {
+int run_command(int argc, char** argv, AddBench add_bench_verb) {
     secure_standard_streams();
     try {
         const Interrupt interrupt;

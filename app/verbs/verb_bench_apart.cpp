@@ -18,12 +18,19 @@ namespace fs = std::filesystem;
 
 /// Where the program lies: beside the command in a build, in the folder of internal programs once installed.
 fs::path bench_program() {
-    std::error_code unknown;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", unknown).parent_path();
-    for (const fs::path& place : {folder / "cairn-bench", folder / ".." / CAIRN_LIBEXECDIR / "cairn-bench"})
-        if (fs::exists(place, unknown)) return place;
-    throw Error(Fault::usage, "bench", "this cairn was built without its benchmarks",
-                "configure with -DCAIRN_BENCH=ON and build again");
+    std::error_code failed;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", failed).parent_path();
+    if (failed) {  // never a program of the working folder
+        throw Error(Fault::usage, "/proc/self/exe", failed.message(),
+                    "mount /proc, or run cairn-bench where it is installed");
+    }
+    const fs::path beside = folder / "cairn-bench";
+    const fs::path installed = folder.parent_path() / CAIRN_LIBEXECDIR / "cairn-bench";
+    for (const fs::path& place : {beside, installed})
+        if (fs::exists(place, failed)) return place;
+    throw Error(Fault::usage, "bench",
+                "there is neither \"" + beside.string() + "\" nor \"" + installed.string() + "\"",
+                "configure with -DCAIRN_BENCH=ON, then build, and install if you do");
 }
 
 /// Becomes that program.
@@ -43,12 +50,8 @@ fs::path bench_program() {
 
 }  // namespace
 
-void add_bench_apart(CLI::App& command, Work& chosen) {
-    CLI::App& verb = *command.add_subcommand("bench", bench_description);
-    verb.set_help_flag();  // the program's own help has the options
-    verb.prefix_command();
-    verb.callback(
-        [&chosen, &verb] { chosen = [options = verb.remaining()]() -> ExitCode { hand_over(options); }; });
+Work bench_apart(const std::vector<std::string>& options) {
+    return [options]() -> ExitCode { hand_over(options); };
 }
 
 }  // namespace cairn::app

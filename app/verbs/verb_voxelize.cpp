@@ -42,12 +42,13 @@ void add_options(CLI::App& verb, Options& options) {
         verb, "--fill", "NAME",
         "surface: only voxels that the surface touches (default);\n"
         "solid, winding: also what the surface winds around;\n"
-        "parity: also what it is crossed an odd number of times to leave;\n"
+        "parity: also what is inside by the number of crossings;\n"
         "outside: also all that the outside cannot reach",
         [&options](const std::string& name) { options.solid = named("--fill", name, fill_names()); });
-    add_file_option(verb, "--doubtful", options.doubtful, voxelizer::voxel_file_endings(),
-                    "a file for the voxels of a solid that the rules of --fill would\nnot agree on, without "
-                    "colours");
+    add_file_option(
+        verb, "--doubtful", options.doubtful, voxelizer::voxel_file_endings(),
+        "a file for doubtful voxels of a solid: empty, though enclosed\nby what makes no cavity; or "
+        "filled, though reached");
     verb.add_flag("--plain", options.plain, "no colours and no normals in the file: much faster");
     add_voxelization_options(verb, options.voxelization);
 }
@@ -81,17 +82,22 @@ std::unique_ptr<voxelizer::VoxelWriter> make_writer(const fs::path& path, const 
 
 /// @throws Error (Fault::usage) if doubtful voxels are asked for where there are none.
 void check_options(const Options& options) {
-    if (!options.doubtful) return;
-    if (!options.solid || *options.solid == voxelizer::SolidRule::outside) {
-        throw Error(Fault::usage, "--doubtful",
-                    options.solid ? "what the outside cannot reach is not in doubt"
-                                  : "voxels that the surface touches are not in doubt",
-                    "give --fill solid or --fill parity as well");
-    }
+    const bool by_outside = options.solid == voxelizer::SolidRule::outside;
+    if (options.doubtful && !options.solid)
+        throw Error(Fault::usage, "--doubtful", "voxels that the surface touches are not in doubt",
+                    "give --fill solid or --fill parity, too");
+    if (options.doubtful && by_outside)
+        throw Error(Fault::usage, "--doubtful", "what the outside cannot reach is not in doubt",
+                    "give --fill solid or --fill parity instead");
+    if ((options.doubtful || by_outside) && options.voxelization.method != voxelizer::Method::conservative)
+        throw Error(Fault::usage, options.doubtful ? "--doubtful" : "--fill outside",
+                    "the outside comes in through the gaps that this method leaves",
+                    "leave out --method: the default leaves none");
 }
 
 /// @return milliseconds spent on writing
-double voxelize(Voxelization& voxelization, voxelizer::VoxelWriter* writer, bool quiet) {
+double voxelize(Voxelization& voxelization, voxelizer::VoxelWriter* writer, voxelizer::VoxelWriter* doubtful,
+                bool quiet) {
     double write_ms = 0.0;
     {
         Progress progress("voxelizing", quiet);
@@ -105,26 +111,21 @@ double voxelize(Voxelization& voxelization, voxelizer::VoxelWriter* writer, bool
             [&progress](double share) {
                 progress.set(share);
                 return true;
-            });
+            },
+            doubtful != nullptr ? [doubtful](voxelizer::VoxelTile&& tile) { doubtful->add(tile); }
+                                : voxelizer::TileSink());
     }
-    if (writer == nullptr) return write_ms;
-    {
-        const Progress progress("writing", quiet);
-        Stopwatch watch;
-        writer->finish();
-        write_ms += watch.lap_ms();
+    for (voxelizer::VoxelWriter* const each : {writer, doubtful}) {
+        if (each == nullptr) continue;
+        {
+            const Progress progress("writing", quiet);
+            Stopwatch watch;
+            each->finish();
+            write_ms += watch.lap_ms();
+        }
+        if (const std::string warning = each->warning(); !warning.empty()) warn(warning);
     }
-    if (const std::string warning = writer->warning(); !warning.empty()) warn(warning);
     return write_ms;
-}
-
-void write_doubts(Voxelization& voxelization, voxelizer::VoxelWriter* writer) {
-    if (writer == nullptr) {
-        voxelization.find_doubts({});
-        return;
-    }
-    voxelization.find_doubts([&](voxelizer::VoxelTile&& tile) { writer->add(tile); });
-    writer->finish();
 }
 
 ExitCode run(const Options& options) {
@@ -135,11 +136,12 @@ ExitCode run(const Options& options) {
     if (options.output) writer = make_writer(*options.output, scene.grid);
     std::unique_ptr<voxelizer::VoxelWriter> doubtful;
     if (options.doubtful) doubtful = make_writer(*options.doubtful, scene.grid);
-    Voxelization voxelization(
-        options.voxelization, std::move(scene),
-        {.attributes = writer && writer->wants_attributes() && !options.plain, .solid = options.solid});
-    const double write_ms = voxelize(voxelization, writer.get(), options.voxelization.common.report.quiet);
-    write_doubts(voxelization, doubtful.get());
+    Voxelization voxelization(options.voxelization, std::move(scene),
+                              {.attributes = writer && writer->wants_attributes() && !options.plain,
+                               .solid = options.solid,
+                               .doubts = options.doubtful.has_value()});
+    const double write_ms =
+        voxelize(voxelization, writer.get(), doubtful.get(), options.voxelization.common.report.quiet);
     voxelization.report(report);
     if (options.output) {
         report.add("write_ms", write_ms);

@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -20,10 +22,10 @@ void add_render(CLI::App& command, Work& chosen);
 void add_view(CLI::App& command, Work& chosen);
 void add_export(CLI::App& command, Work& chosen);
 void add_shadow(CLI::App& command, Work& chosen);
-/// Of the program cairn-bench.
+/// Only in the program cairn-bench.
 void add_bench(CLI::App& command, Work& chosen);
-/// The same verb of the command, which hands over to that program.
-void add_bench_apart(CLI::App& command, Work& chosen);
+/// In the command: runs that program with the options, which are all words after "bench".
+[[nodiscard]] Work bench_apart(const std::vector<std::string>& options);
 
 inline constexpr const char* bench_description = "Measure speed and accuracy: a CSV and a picture";
 

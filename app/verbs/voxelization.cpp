@@ -47,7 +47,7 @@ Voxelization::Voxelization(const VoxelizationOptions& options, GriddedInput scen
     surface_ms_ = watch.lap_ms();
     if (needs.solid) {
         rule_ = *needs.solid;
-        build_solid();
+        build_solid(needs.doubts);
     }
     fill_ms_ = watch.lap_ms();
     driver_.emplace(options.common.driver);
@@ -59,8 +59,12 @@ Voxelization::Voxelization(const VoxelizationOptions& options, GriddedInput scen
     if (needs.attributes) attributes_.emplace(options.common.driver.shaders);
 }
 
-void Voxelization::build_solid() {
-    solid_.emplace(*surface_, grid_, voxelizer::SolidOptions{.rule = rule_});
+void Voxelization::build_solid(bool needs_doubts) {
+    const ReportOptions& report = options_.common.report;
+    // Doubts need a surface without gaps, and somebody who is told of them.
+    const bool doubts =
+        options_.method == voxelizer::Method::conservative && (needs_doubts || !report.quiet || report.json);
+    solid_.emplace(*surface_, grid_, voxelizer::SolidOptions{.rule = rule_, .doubts = doubts});
     const std::optional<voxelizer::SolidFill>& crossings = solid_->crossings();
     if (!crossings || crossings->doubtful_rows() == 0 || options_.common.report.quiet) return;
     warn(
@@ -70,34 +74,48 @@ void Voxelization::build_solid() {
                     crossings->doubtful_rows(), crossings->row_count()));
 }
 
-void Voxelization::find_doubts(const voxelizer::TileSink& sink) {
-    if (!solid_) return;
-    Stopwatch watch;
-    doubts_ = solid_->find_doubts(sink);
-    doubts_ms_ = watch.lap_ms();
-    if (!doubts_ && sink) {
-        throw Error(Fault::memory, "--doubtful", "what the outside reaches takes more memory than it may",
-                    "choose fewer voxels");
-    }
+void Voxelization::warn_of_doubts() const {
     if (options_.common.report.quiet) return;
-    if (!doubts_) {
+    const std::optional<voxelizer::Doubts>& doubts = solid_->doubts();
+    if (options_.method != voxelizer::Method::conservative) return;
+    if (!doubts) {
         warn(
             "doubtful voxels were not looked for: what the outside reaches would take more memory than it "
             "may");
         return;
     }
-    if (doubts_->enclosed > 0) {
+    if (doubts->enclosed > 0) {
         warn(
             fmt::format("{} voxels stayed empty, though the surface encloses them: faces are doubled or "
                         "missing, or parts are turned against each other; --fill outside fills them",
-                        doubts_->enclosed));
+                        doubts->enclosed));
     }
-    if (doubts_->reached > 0) {
+    if (doubts->reached > 0) {
         warn(
             fmt::format("{} voxels were filled, though the outside reaches them through a hole; --fill "
                         "outside leaves them empty",
-                        doubts_->reached));
+                        doubts->reached));
     }
+}
+
+void Voxelization::check_doubts() const {
+    if (solid_->looks_for_doubts()) return;
+    throw Error(Fault::memory, "--doubtful", "what the outside reaches takes more memory than it may",
+                "choose fewer voxels");
+}
+
+void Voxelization::finish_solid(const voxelizer::TileSink& sink, const voxelizer::TileSink& doubtful) {
+    double elsewhere_ms = 0.0;  // what attributes and writers take
+    const auto timed = [&elsewhere_ms](const voxelizer::TileSink& to) {
+        return [&elsewhere_ms, &to](voxelizer::VoxelTile&& tile) {
+            Stopwatch watch;
+            to(std::move(tile));
+            elsewhere_ms += watch.lap_ms();
+        };
+    };
+    Stopwatch watch;
+    solid_->finish(timed(sink), doubtful ? timed(doubtful) : voxelizer::TileSink());
+    fill_ms_ += watch.lap_ms() - elsewhere_ms;
 }
 
 void Voxelization::add_attributes(voxelizer::VoxelTile& tile) {
@@ -108,19 +126,24 @@ void Voxelization::add_attributes(voxelizer::VoxelTile& tile) {
     attributes_ms_ += watch.lap_ms();
 }
 
-void Voxelization::run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress) {
+void Voxelization::run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress,
+                       const voxelizer::TileSink& doubtful) {
     voxelizer::TileSink with_attributes = [&](voxelizer::VoxelTile&& tile) {
         add_attributes(tile);
         sink(std::move(tile));
     };
     statistics_ = voxelizer::voxelize_tiles(
         *voxelizer_, on_gpu_, *index_, grid_,
-        solid_ ? [&](voxelizer::VoxelTile&& tile) { solid_->add(std::move(tile), with_attributes); }
-               : with_attributes,
+        solid_ ? [&](voxelizer::VoxelTile&& tile) {
+            solid_->add(std::move(tile), with_attributes);
+            if (doubtful) check_doubts();
+        } : with_attributes,
         [&progress](double share) { return !Interrupt::asked() && progress(share); }, {.warm_up = true});
     if (solid_) {
-        solid_->finish(with_attributes);
+        finish_solid(with_attributes, doubtful);
         statistics_.occupied = solid_->occupied();
+        if (doubtful) check_doubts();
+        warn_of_doubts();
     }
     driver_->check();
 }
@@ -139,9 +162,9 @@ void Voxelization::report(Report& report) const {
         report.add("fill_rule", name_of(std::optional(rule_), fill_names()));
         report.add("fill_ms", fill_ms_);
         if (solid_->crossings()) report.add("doubtful_rows", solid_->crossings()->doubtful_rows());
-        report.add("doubtful_enclosed", doubts_ ? Json(doubts_->enclosed) : Json());
-        report.add("doubtful_reached", doubts_ ? Json(doubts_->reached) : Json());
-        report.add("doubts_ms", doubts_ms_);
+        const std::optional<voxelizer::Doubts>& doubts = solid_->doubts();
+        report.add("doubtful_enclosed", doubts ? Json(doubts->enclosed) : Json());
+        report.add("doubtful_reached", doubts ? Json(doubts->reached) : Json());
     }
     if (attributes_) report.add("attributes_ms", attributes_ms_);
     report.add("load_ms", load_ms_);

@@ -43,6 +43,7 @@ public:
         bool attributes = false;                         ///< tiles have colours and normals
         bool surface = false;                            ///< surface() is kept after the upload
         std::optional<voxelizer::SolidRule> solid = {};  ///< insides of closed parts are filled
+        bool doubts = false;                             ///< doubtful voxels are wanted
     };
     /// Prepares everything on the GPU, and frees the scene.
     Voxelization(const VoxelizationOptions& options, GriddedInput scene, const Needs& needs);
@@ -50,20 +51,23 @@ public:
     [[nodiscard]] const voxelizer::Grid& grid() const { return grid_; }
     [[nodiscard]] const voxelizer::Surface& surface() const { return *surface_; }
 
-    /// Voxelizes all tiles, in order, and passes them to `sink`.
-    /// @throws Error (Fault::interrupted) if Interrupt::asked(); what `sink` throws.
-    void run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress);
-
-    /// Warns of voxels of a solid that are doubtful, and passes tiles of them to `sink`. After run().
-    /// @throws Error (Fault::memory) if there is a sink, and what the outside reaches takes too much memory.
-    void find_doubts(const voxelizer::TileSink& sink);
+    /// Voxelizes all tiles, in order, and passes them to `sink`. Warns of voxels of a solid that are
+    /// doubtful, and passes tiles of them to `doubtful`, if it is there.
+    /// @throws Error  Fault::interrupted if Interrupt::asked(); Fault::memory if there is `doubtful`, but
+    /// what
+    ///                the outside reaches takes too much memory; what the sinks throw.
+    void run(const voxelizer::TileSink& sink, const voxelizer::TileProgress& progress,
+             const voxelizer::TileSink& doubtful = {});
 
     /// Adds the figures of both verbs: the grid, occupied voxels, times and the driver.
     void report(Report& report) const;
 
 private:
     void add_attributes(voxelizer::VoxelTile& tile);
-    void build_solid();
+    void build_solid(bool needs_doubts);
+    void check_doubts() const;
+    void finish_solid(const voxelizer::TileSink& sink, const voxelizer::TileSink& doubtful);
+    void warn_of_doubts() const;
 
     VoxelizationOptions options_;
     voxelizer::Grid grid_;
@@ -75,9 +79,7 @@ private:
     std::uint64_t triangle_count_ = 0;
     std::optional<voxelizer::SolidTiles> solid_;
     voxelizer::SolidRule rule_ = voxelizer::SolidRule::winding;
-    std::optional<voxelizer::Doubts> doubts_;
     double fill_ms_ = 0.0;
-    double doubts_ms_ = 0.0;
     std::optional<voxelizer::TriangleIndex> index_;
     std::optional<Driver> driver_;
     voxelizer::GpuSurface on_gpu_;

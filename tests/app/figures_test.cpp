@@ -305,6 +305,11 @@ TEST(AppVoxelize, DoubtfulVoxelsAreCountedAndWritten) {
     EXPECT_EQ(outside["fill_rule"], "outside");
     EXPECT_FALSE(outside.contains("doubtful_rows"));
     EXPECT_EQ(outside["doubtful_enclosed"], 0);
+    const Answer with_gaps = cairn(
+        {"voxelize", "builtin:knot", "-r", "64", "--fill", "solid", "--method", "slice-map", "--json", "-"});
+    EXPECT_EQ(with_gaps.code, 0) << with_gaps;
+    EXPECT_EQ(with_gaps.err, "") << with_gaps;
+    EXPECT_TRUE(with_gaps.json()["doubtful_reached"].is_null()) << with_gaps;
 }
 
 TEST(AppVoxelize, PlainFilesHaveNoAttributes) {

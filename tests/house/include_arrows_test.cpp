@@ -48,7 +48,7 @@ const std::vector<Folder> folders = {
     {"reference/",
      {"reference/", "optics/", "scenes/", "shaders/interop/", "base/", "voxelizer/grid.h",
       "voxelizer/bit_grid.h", "voxelizer/surface/surface.h", "voxelizer/surface/exact_mask.h",
-      "voxelizer/surface/wide_integer.h"}},
+      "voxelizer/surface/surface_attributes.h", "voxelizer/surface/wide_integer.h"}},
     {"renderer/pool/", {"renderer/pool/", "gl/", "shaders/interop/", "base/"}},
     {"renderer/produce/",
      {"renderer/produce/", "renderer/pool/", "voxelizer/", "scenes/", "gl/", "shaders/interop/", "base/"}},

@@ -262,6 +262,12 @@ TEST(SolidFill, OfTilesAndOfRegionsIsThatOfTheWhole) {
         ASSERT_TRUE(same_bits(interior(fill, tile), truth)) << "tile " << i;
         ASSERT_TRUE(same_bits(interior(SolidFill(surface, tile), tile), truth)) << "region " << i;
     }
+    for (int z = 0; z < whole.size.z; ++z) {
+        for (int y = 0; y < whole.size.y; ++y) {
+            for (int x = 0; x < whole.size.x; ++x)
+                ASSERT_EQ(fill.is_inside({x, y, z}), all.at({x, y, z})) << x << ' ' << y << ' ' << z;
+        }
+    }
     BitGrid outside(glm::ivec3(8));
     EXPECT_THROW(fill.add_interior({50, 0, 0}, outside), Error);
     EXPECT_THROW(fill.add_interior({-1, 0, 0}, outside), Error);
@@ -332,6 +338,7 @@ TEST(SolidFill, OfAMeshWithAHoleDiffersOnlyInTheHolesBox) {
         doubtful += fill.doubtful_rows();
         const BitGrid ours = interior(fill, region);
         (void)where(region, [&](const glm::ivec3& v) {
+            EXPECT_EQ(fill.is_inside(v), ours.at(v)) << fmt::format("{} {} {}", v.x, v.y, v.z);
             if (ours.at(v) == truth.at(v)) return false;
             ++different;
             EXPECT_TRUE(truth.at(v)) << "filled outside";

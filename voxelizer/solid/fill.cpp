@@ -185,33 +185,26 @@ void SolidFill::add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const
     });
 }
 
-bool SolidFill::is_doubtful_cavity(const glm::ivec3& root_voxel) const {
+bool SolidFill::is_inside(const glm::ivec3& root_voxel) const {
     const glm::ivec3 voxel = root_voxel - whole_.origin;
-    if (is_doubtful(along_x_, voxel, rule_)) return true;
-    if (!closed() && (is_doubtful(*along_y_, voxel, rule_) || is_doubtful(*along_z_, voxel, rule_)))
-        return true;
-    int winding = 0;
-    int at_voxel = 0;
-    bool positive = false;
-    bool negative = false;
-    bool cancelled_before = false;
-    bool cancelled_behind = false;
+    const Verdict by_x = verdict_on(along_x_.row(voxel), rule_, voxel.x);
+    if (closed()) return by_x.inside;
+    const Verdict by_y = verdict_on(along_y_->row(voxel), rule_, voxel.y);
+    const Verdict by_z = verdict_on(along_z_->row(voxel), rule_, voxel.z);
+    const int by_whole = int(by_x.whole) + int(by_y.whole) + int(by_z.whole);  // of those that say inside
+    return by_whole >= 2 || (by_x.inside && by_y.inside && by_z.inside);
+}
+
+std::optional<int> SolidFill::winding_at(const glm::ivec3& root_voxel) const {
+    const glm::ivec3 voxel = root_voxel - whole_.origin;
     const Row row = along_x_.row(voxel);
-    for (std::size_t i = 0; i < row.size();) {
-        const int place = row[i].voxel();
-        const int before = winding;
-        for (; i < row.size() && row[i].voxel() == place; ++i)
-            winding += row[i].winding();
-        positive = positive || winding > 0;
-        negative = negative || winding < 0;
-        if (place <= voxel.x) at_voxel = winding;
-        if (before == 0 && winding == 0) {
-            cancelled_before = cancelled_before || place <= voxel.x;
-            cancelled_behind = cancelled_behind || place > voxel.x;
-        }
+    if (along_x_.is_odd(voxel) || !is_whole(row)) return std::nullopt;
+    int winding = 0;
+    for (const RowCrossings::Event& event : row) {
+        if (event.voxel() > voxel.x) break;
+        winding += event.winding();
     }
-    return (positive && negative) || (cancelled_before && cancelled_behind) ||
-           (rule_ == SolidRule::parity && at_voxel != 0);
+    return winding;
 }
 
 void SolidFill::fill_slice(const glm::ivec3& low, int z, BitGrid& tile) const {

@@ -25,6 +25,8 @@ struct SolidOptions {
     SolidRule rule = SolidRule::winding;
     /// What crossings may take, and what the flood from outside may take.
     std::size_t memory_bytes = std::size_t(1) << 30;
+    /// Whether a fill by crossings looks for doubtful voxels, too (SolidTiles::doubts()).
+    bool doubts = true;
 };
 
 /// The inside of closed meshes by counting crossings, exactly: the voxels whose centre the surface winds
@@ -71,15 +73,14 @@ public:
     /// @throws Error (Fault::usage) if the tile does not lie within `whole`.
     void add_interior(const glm::ivec3& tile_origin, BitGrid& tile) const;
 
-    /// Whether crossings give reason to doubt that a voxel that is not inside, though the surface encloses
-    /// it, is a cavity:
-    ///   - one of the rows that were asked is doubtful; or along x
-    ///   - the crossings cancel each other in pairs between the same two voxels, before the voxel and behind
-    ///     it: faces that are doubled, or walls thinner than a voxel;
-    ///   - winding numbers of both signs occur: parts are turned against each other;
-    ///   - by SolidRule::parity, the winding number is not 0: parts that are nested or overlap.
-    /// @param voxel  as tile_origin of add_interior()
-    [[nodiscard]] bool is_doubtful_cavity(const glm::ivec3& voxel) const;
+    /// Whether one voxel is inside.
+    /// @param voxel  voxel of the root cube, in `whole`
+    [[nodiscard]] bool is_inside(const glm::ivec3& voxel) const;
+
+    /// How often the surface winds around a voxel's centre, by the row along x. Nothing if the signs of that
+    /// row do not add up to 0.
+    /// @param voxel  as for is_inside()
+    [[nodiscard]] std::optional<int> winding_at(const glm::ivec3& voxel) const;
 
     /// Whether the mesh is closed, as the rule means it. Decided by a sum of 128-bit hashes over its edges.
     [[nodiscard]] bool closed() const { return !along_y_; }

@@ -7,8 +7,6 @@
 #include <tbb/concurrent_vector.h>
 #include <tbb/parallel_for.h>
 
-#include "voxelizer/solid/visit_crossings.h"
-
 namespace cairn::voxelizer {
 namespace {
 
@@ -58,13 +56,20 @@ void spread_in_block(Rows& reached, const Rows& free) {
 
 }  // namespace
 
-Outside::Outside(const Surface& surface, const Region& whole, std::size_t memory_bytes)
+Outside::Sides Outside::open_sides(const Region& whole) {
+    Sides sides;
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::ivec3 size(whole.size[axis == 0 ? 1 : 0], whole.size[axis == 2 ? 1 : 2], 1);
+        sides[std::size_t(axis)] = {BitGrid(size), BitGrid(size)};
+    }
+    return sides;
+}
+
+Outside::Outside(const Region& whole, std::size_t memory_bytes)
     : whole_(whole), counts_((whole.size - 1) / block_side + 1), memory_bytes_(memory_bytes) {
     const std::size_t count = std::size_t(counts_.x) * std::size_t(counts_.y) * std::size_t(counts_.z);
     blocks_.resize(count);
     wholly_reached_.assign(count, 0);
-    for (int axis = 0; axis < 3; ++axis)
-        find_covered(surface, axis);
 }
 
 std::size_t Outside::number_of(const glm::ivec3& place) const {
@@ -83,7 +88,15 @@ glm::ivec3 Outside::size_of(const glm::ivec3& place) const {
 }
 
 std::size_t Outside::size_bytes() const {
-    return blocks_.size() * (sizeof(blocks_[0]) + sizeof(wholly_reached_[0])) + stored_ * sizeof(Block);
+    return least_bytes(whole_) + stored_ * sizeof(Block);
+}
+
+std::size_t Outside::least_bytes(const Region& whole) {
+    const glm::u64vec3 size(whole.size);
+    const glm::u64vec3 counts = (size - std::uint64_t(1)) / std::uint64_t(block_side) + std::uint64_t(1);
+    const std::uint64_t places = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
+    return counts.x * counts.y * counts.z * (sizeof(std::unique_ptr<Block>) + sizeof(std::uint8_t)) +
+           places / 8;
 }
 
 std::unique_ptr<Outside::Block> Outside::make_block(const glm::ivec3& place) const {
@@ -94,33 +107,6 @@ std::unique_ptr<Outside::Block> Outside::make_block(const glm::ivec3& place) con
             block->free[std::size_t(z) * block_side + std::size_t(y)] = low_bits(size.x);
     }
     return block;
-}
-
-void Outside::find_covered(const Surface& surface, int axis) {
-    const int across = axis == 0 ? 1 : 0;
-    const int down = axis == 2 ? 1 : 2;
-    auto& sides = covered_[std::size_t(axis)];
-    for (BitGrid& side : sides)
-        side = BitGrid({whole_.size[across], whole_.size[down], 1});
-    const int length = whole_.size[axis];
-    const std::int64_t voxel = whole_.voxel_side();
-    const std::int64_t first_centre = std::int64_t(whole_.origin[axis]) * voxel + voxel / 2;
-    const std::int64_t last_centre = first_centre + std::int64_t(length - 1) * voxel;
-    const auto may_lie_beyond = [&](const LatticeCorners& corners) {
-        return std::ranges::any_of(corners, [&](const glm::i64vec3& corner) {
-            return corner[axis] <= first_centre || corner[axis] >= last_centre;
-        });
-    };
-    visit_crossings(surface, whole_, axis, may_lie_beyond, [&](int u, int v, const auto& rows) {
-        const std::int64_t beyond = rows.first_beyond(u, v);
-        if (beyond > 0 && beyond < length) return;
-        glm::ivec3 at(0);
-        at[(axis + 1) % 3] = u;
-        at[(axis + 2) % 3] = v;
-        BitGrid& side = sides[beyond > 0 ? 1 : 0];
-        std::atomic_ref(side.words[side.word_index(at[across], at[down], 0)])
-            .fetch_or(1U << (at[across] % 32), std::memory_order_relaxed);
-    });
 }
 
 bool Outside::add_surface(const glm::ivec3& tile_origin, const BitGrid& tile) {
@@ -161,7 +147,7 @@ void Outside::visit_entries(std::size_t number, const Visit& visit) const {
             beside[axis] += high ? 1 : -1;
             const bool within = beside[axis] >= 0 && beside[axis] < counts_[axis];
             const std::size_t neighbour = within ? number_of(beside) : 0;
-            const BitGrid& side = covered_[std::size_t(axis)][high ? 1 : 0];
+            const BitGrid& side = closed_[std::size_t(axis)][high ? 1 : 0];
             const int last = block_side - 1;
             const int here = high ? size[axis] - 1 : 0;  // the layer of this block, and the neighbour's
             const int there = high ? 0 : last;
@@ -237,7 +223,8 @@ bool Outside::advance(std::size_t number) {
     return entered;
 }
 
-void Outside::flood() {
+void Outside::flood(Sides closed) {
+    closed_ = std::move(closed);
     // Blocks whose places have an even sum advance together, and then the others: neighbours by a face are
     // never both written and read.
     std::array<tbb::concurrent_vector<std::size_t>, 2> waiting;
@@ -261,17 +248,26 @@ void Outside::flood() {
     }
 }
 
-template <typename Row>
-BitGrid Outside::copied(const glm::ivec3& tile_origin, const glm::ivec3& tile_size, const Row& row) const {
-    const glm::ivec3 low = tile_origin - whole_.origin;
+Outside::Word Outside::word_at(const glm::ivec3& voxel) const {
+    const glm::ivec3 at = voxel - whole_.origin;
+    const glm::ivec3 within = at % block_side;
+    const std::size_t number = number_of(at / block_side);
+    const std::uint32_t in_region = low_bits(whole_.size.x - at.x);
+    const std::uint32_t free =
+        blocks_[number] ? blocks_[number]->free[std::size_t(within.z) * block_side + std::size_t(within.y)]
+                        : in_region;
+    const std::uint32_t reached = row_reached(number, within.y, within.z) & in_region;
+    return {reached, free & ~reached, in_region & ~free};
+}
+
+template <typename Part>
+BitGrid Outside::copied(const glm::ivec3& tile_origin, const glm::ivec3& tile_size, const Part& part) const {
     BitGrid tile(tile_size);
     tbb::parallel_for(0, tile_size.z, [&](int z) {
         for (int y = 0; y < tile_size.y; ++y) {
             for (int x = 0; x < tile_size.x; x += block_side) {
-                const glm::ivec3 voxel = low + glm::ivec3(x, y, z);
-                const glm::ivec3 within = voxel % block_side;
                 tile.words[tile.word_index(x, y, z)] =
-                    low_bits(tile_size.x - x) & row(number_of(voxel / block_side), within.y, within.z);
+                    low_bits(tile_size.x - x) & part(word_at(tile_origin + glm::ivec3(x, y, z)));
             }
         }
     });
@@ -279,21 +275,45 @@ BitGrid Outside::copied(const glm::ivec3& tile_origin, const glm::ivec3& tile_si
 }
 
 BitGrid Outside::reached(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const {
-    return copied(tile_origin, tile_size,
-                  [this](std::size_t number, int y, int z) { return row_reached(number, y, z); });
+    return copied(tile_origin, tile_size, [](const Word& word) { return word.reached; });
 }
 
 BitGrid Outside::enclosed(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const {
-    return copied(tile_origin, tile_size, [this](std::size_t number, int y, int z) {
-        const std::uint32_t free =
-            blocks_[number] ? blocks_[number]->free[std::size_t(z) * block_side + std::size_t(y)] : ~0U;
-        return free & ~row_reached(number, y, z);
-    });
+    return copied(tile_origin, tile_size, [](const Word& word) { return word.enclosed; });
 }
 
 BitGrid Outside::solid(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const {
-    return copied(tile_origin, tile_size,
-                  [this](std::size_t number, int y, int z) { return ~row_reached(number, y, z); });
+    return copied(tile_origin, tile_size, [](const Word& word) { return word.enclosed | word.surface; });
+}
+
+BitGrid Outside::surface(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const {
+    return copied(tile_origin, tile_size, [](const Word& word) { return word.surface; });
+}
+
+bool Outside::holds(const glm::ivec3& voxel) const {
+    const glm::ivec3 at = voxel - whole_.origin;
+    return glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, whole_.size));
+}
+
+bool Outside::touches(const glm::ivec3& voxel) const {
+    const glm::ivec3 at = voxel - whole_.origin;
+    const std::unique_ptr<Block>& block = blocks_[number_of(at / block_side)];
+    const glm::ivec3 within = at % block_side;
+    return block &&
+           (block->free[std::size_t(within.z) * block_side + std::size_t(within.y)] >> within.x & 1U) == 0;
+}
+
+bool Outside::has_surface(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const {
+    const glm::ivec3 first = (tile_origin - whole_.origin) / block_side;
+    const glm::ivec3 last = (tile_origin - whole_.origin + tile_size - 1) / block_side;
+    for (int z = first.z; z <= last.z; ++z) {
+        for (int y = first.y; y <= last.y; ++y) {
+            for (int x = first.x; x <= last.x; ++x) {
+                if (blocks_[number_of({x, y, z})]) return true;
+            }
+        }
+    }
+    return false;
 }
 
 }  // namespace cairn::voxelizer

@@ -10,10 +10,52 @@
 #include <tbb/parallel_for.h>
 
 #include "base/error.h"
-#include "voxelizer/solid/visit_crossings.h"
+#include "shaders/interop/grid.h"
+#include "voxelizer/solid/solid_triangles.h"
+#include "voxelizer/surface/crossed_rows.h"
 
 namespace cairn::voxelizer {
 namespace {
+
+/// Calls visit(u, v, rows) for each row that a triangle crosses.
+template <typename Int, typename Visit>
+void visit_rows(const std::array<std::array<Int, 3>, 3>& corners, const Region& region, int axis,
+                const Visit& visit) {
+    const CrossedRows<Int> rows(corners, region, axis);
+    if (rows.winding() == 0) return;
+    for (int v = rows.first_v(); v <= rows.last_v(); ++v) {
+        const auto interval = rows.crossed_u(v);
+        for (int u = interval.first; u <= interval.last; ++u)
+            visit(u, v, rows);
+    }
+}
+
+bool in_shader_range(const std::array<glm::i64vec3, 3>& p) {
+    constexpr std::int64_t side = std::int64_t(1) << LATTICE_BITS;
+    return std::all_of(p.begin(), p.end(), [](const glm::i64vec3& corner) {
+        return glm::all(glm::greaterThanEqual(corner, glm::i64vec3(-side))) &&
+               glm::all(glm::lessThanEqual(corner, glm::i64vec3(2 * side)));
+    });
+}
+
+template <typename Int>
+std::array<std::array<Int, 3>, 3> as(const std::array<glm::i64vec3, 3>& p) {
+    std::array<std::array<Int, 3>, 3> out;
+    for (std::size_t i = 0; i < 3; ++i)
+        out[i] = {Int(p[i].x), Int(p[i].y), Int(p[i].z)};
+    return out;
+}
+
+template <typename Visit>
+void visit_all(const Surface& surface, const Region& region, int axis, const Visit& visit) {
+    for_each_triangle(surface, [&](const std::array<glm::i64vec3, 3>& corners) {
+        if (in_shader_range(corners)) {
+            visit_rows(as<std::int64_t>(corners), region, axis, visit);
+        } else {
+            visit_rows(as<Int128>(corners), region, axis, visit);
+        }
+    });
+}
 
 void check_memory(double needed_bytes, std::size_t limit_bytes, const Region& region) {
     if (needed_bytes <= double(limit_bytes)) return;
@@ -36,7 +78,7 @@ RowCrossings::RowCrossings(const Surface& surface, const Region& region, int axi
     ends_.assign(row_count, 0);
     odd_.assign(row_count, false);
     // Counted first; then `ends_` holds where each row starts, and grows to where it ends.
-    visit_crossings(surface, region, axis, every_triangle, [&](int u, int v, const auto& /*rows*/) {
+    visit_all(surface, region, axis, [&](int u, int v, const auto& /*rows*/) {
         const std::size_t row = std::size_t(v) * std::size_t(u_size_) + std::size_t(u);
         std::atomic_ref(ends_[row]).fetch_add(1, std::memory_order_relaxed);
     });
@@ -54,7 +96,7 @@ RowCrossings::RowCrossings(const Surface& surface, const Region& region, int axi
     for (std::uint32_t& end : ends_)
         next += std::exchange(end, next);
     const int length = region.size[axis];
-    visit_crossings(surface, region, axis, every_triangle, [&](int u, int v, const auto& rows) {
+    visit_all(surface, region, axis, [&](int u, int v, const auto& rows) {
         const std::size_t row = std::size_t(v) * std::size_t(u_size_) + std::size_t(u);
         if (odd_[row]) return;
         const std::uint32_t place = std::atomic_ref(ends_[row]).fetch_add(1, std::memory_order_relaxed);
