@@ -23,7 +23,7 @@ constexpr std::string_view builtin_prefix = "builtin:";
 constexpr int finest_sponge = 1594323;  // 3^13
 
 constexpr std::array shells = {
-    BuiltinVolume{"hollow-sphere", "a volume: a shell, by its formula at any resolution", 0.40, 0.45},
+    BuiltinVolume{"hollow-sphere", "a volume: a shell, by its formula at any resolution", 0.25, 0.30},
     BuiltinVolume{"ball", "a volume: a ball, likewise", 0.0, 0.45},
 };
 

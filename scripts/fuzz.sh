@@ -3,6 +3,9 @@
 #
 #   scripts/fuzz.sh [SECONDS [TARGET ...]]   60 seconds each of gltf, volume, uri, options and transfer
 #
+# Files that once went wrong are seeds too, where they lie beside the scenes: in ../cases of the folder that the environment
+# variable CAIRN_SCENE_DATA names, or in ../shared/cases.
+#
 # What it learns stays in build/fuzz/corpus. An input that breaks something is kept in build/fuzz/found: mend the fault, and
 # move the input to fuzz/corpus, where the tests run it.
 set -euo pipefail
@@ -20,15 +23,29 @@ if ((${#targets[@]} == 0)); then targets=(gltf volume uri options transfer); fi
 cmake --preset fuzz
 cmake --build --preset fuzz --target "${targets[@]/%/_fuzz}"
 
+cases=${CAIRN_SCENE_DATA:-../shared/data}/../cases
+seeds_of() {
+  echo "$PWD/fuzz/corpus/$1"
+  case $1 in
+    gltf) folders=(voxelize hostile pictures) ;;
+    volume) folders=(hostile pictures) ;;
+    *) folders=() ;;
+  esac
+  for folder in "${folders[@]}"; do
+    if [[ -d $cases/$folder ]]; then (cd "$cases/$folder" && pwd); fi
+  done
+}
+
 failed=()
 for target in "${targets[@]}"; do
   echo "== fuzz: $target, $seconds s"
   mkdir -p "build/fuzz/corpus/$target" build/fuzz/found
+  mapfile -t seeds < <(seeds_of "$target")
   # A file of some KB may ask for no more than this much memory and time. Whole paths, because a fuzzer may go to a folder
   # of its own.
   if ! "build/fuzz/fuzz/${target}_fuzz" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -max_len=16384 \
     -print_final_stats=1 -artifact_prefix="$PWD/build/fuzz/found/$target-" "$PWD/build/fuzz/corpus/$target" \
-    "$PWD/fuzz/corpus/$target" 2> "build/fuzz/$target.log"; then
+    "${seeds[@]}" 2> "build/fuzz/$target.log"; then
     failed+=("$target")
     tail -n 60 "build/fuzz/$target.log"
   fi

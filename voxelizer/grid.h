@@ -35,9 +35,8 @@ struct Grid {
     /// same result.
     [[nodiscard]] double lattice_scale() const;
     /// Nearest lattice point, floor((world - origin) * lattice_scale() + 1/2); not limited to the root cube.
-    /// @throws Error  Fault::usage if the point lies further than lattice_world_limit units away;
-    /// Fault::input
-    ///                if it is not finite.
+    /// @throws Error (Fault::usage)  if the point lies further than lattice_world_limit units away.
+    /// @throws Error (Fault::input)  if it is not finite.
     [[nodiscard]] glm::i64vec3 lattice_from_world(const glm::dvec3& world) const;
 };
 

@@ -53,6 +53,12 @@ void add_options(CLI::App& verb, Options& options) {
     add_voxelization_options(verb, options.voxelization);
 }
 
+std::string in_bytes(double bytes) {
+    if (bytes >= 0x1p30) return fmt::format("{:.1f} GiB", bytes / 0x1p30);
+    return bytes >= 0x1p20 ? fmt::format("{:.1f} MiB", bytes / 0x1p20)
+                           : fmt::format("{:.1f} KiB", bytes / 0x1p10);
+}
+
 /// Checks before any work that there is room for a .npy file, which holds every voxel, empty or not.
 /// @throws Error (Fault::memory) if there is not.
 void check_room(const fs::path& path, const voxelizer::Grid& grid) {
@@ -67,9 +73,8 @@ void check_room(const fs::path& path, const voxelizer::Grid& grid) {
     if (unknown || needed <= double(room.available)) return;
     throw Error(
         Fault::memory, path.string(),
-        fmt::format("a byte for each of {} x {} x {} voxels takes {:.1f} GiB, and {:.1f} GiB are free",
-                    grid.resolution.x, grid.resolution.y, grid.resolution.z, needed / 0x1p30,
-                    double(room.available) / 0x1p30),
+        fmt::format("a byte for each of {} x {} x {} voxels takes {}, and {} are free", grid.resolution.x,
+                    grid.resolution.y, grid.resolution.z, in_bytes(needed), in_bytes(double(room.available))),
         "choose a format that leaves out what is empty (.vdb), or fewer voxels");
 }
 

@@ -85,10 +85,11 @@ void Voxelization::warn_of_doubts() const {
         return;
     }
     if (doubts->enclosed > 0) {
-        warn(
-            fmt::format("{} voxels stayed empty, though the surface encloses them: faces are doubled or "
-                        "missing, or parts are turned against each other; --fill outside fills them",
-                        doubts->enclosed));
+        warn(fmt::format(
+            "{} voxels stayed empty, though the surface encloses them: faces are doubled, missing "
+            "or cut by a mask, walls are thinner than a voxel, or parts are turned against each "
+            "other; --fill outside fills them",
+            doubts->enclosed));
     }
     if (doubts->reached > 0) {
         warn(

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "bench/trials/real_scenes.h"
+#include "renderer/open_content.h"
 #include "renderer/produce/dense_field.h"
 #include "renderer/produce/made_fields.h"
 #include "renderer/produce/volume_content.h"
@@ -20,8 +21,6 @@
 namespace cairn::bench {
 namespace {
 
-constexpr double shell_inner = 0.25;
-constexpr double shell_outer = 0.30;
 constexpr std::int64_t copy_resolution = 256;
 /// Optical depth of density 1 per finest voxel: solids are opaque after a few voxels, however fine these are.
 constexpr double optical_depth = 1.0;
@@ -30,6 +29,12 @@ constexpr double scan_empty = 0.3;
 
 constexpr std::string_view one_shell = "builtin:hollow-sphere";
 constexpr std::string_view repeated_shells = "builtin:spheres-repeated";
+
+const renderer::BuiltinVolume& shell() {
+    const auto shells = renderer::builtin_volumes();
+    return *std::ranges::find(shells, one_shell.substr(one_shell.find(':') + 1),
+                              &renderer::BuiltinVolume::name);
+}
 
 bool is_shells(std::string_view path) {
     return path == one_shell || path == repeated_shells;
@@ -133,8 +138,8 @@ FrameCase::ShownField FrameCase::shown_field(const renderer::TreeOptions& tree) 
     const bool are_repeated = std::get<Data::Shells>(data_->shown).are_repeated;
     const int copies = are_repeated ? int(std::max<std::int64_t>(resolution / copy_resolution, 1)) : 1;
     const double side = 1.0 / copies;
-    std::shared_ptr<const renderer::Field> field =
-        std::make_shared<renderer::HollowSphere>(tree.n, resolution / copies, shell_inner, shell_outer, side);
+    std::shared_ptr<const renderer::Field> field = std::make_shared<renderer::HollowSphere>(
+        tree.n, resolution / copies, shell().inner, shell().outer, side);
     if (copies > 1) {
         const auto repeated = std::make_shared<renderer::RepeatedField>(std::move(field), copies);
         field = std::make_shared<MovedField>(repeated, bounds_.low);

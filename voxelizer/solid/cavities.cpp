@@ -82,6 +82,10 @@ private:
 
 }  // namespace
 
+std::size_t Cavities::size_bytes() const {
+    return runs_.size_bytes() / sizeof(VoxelRun) * (sizeof(VoxelRun) + sizeof(Walls) + sizeof(parents_[0]));
+}
+
 std::uint32_t Cavities::part_of(std::uint32_t run) {
     while (parents_[run] != run) {
         parents_[run] = parents_[parents_[run]];

@@ -28,7 +28,8 @@ class Cavities {
 public:
     /// Takes the empty, enclosed voxels of one tile.
     void add(const glm::ivec3& tile_origin, const BitGrid& tile) { runs_.add(tile_origin, tile); }
-    [[nodiscard]] std::size_t size_bytes() const { return runs_.size_bytes(); }
+    /// What judge() takes, too.
+    [[nodiscard]] std::size_t size_bytes() const;
 
     /// Finds the doubtful parts; after the last add().
     void judge(const SolidFill& crossings, const Outside& outside);

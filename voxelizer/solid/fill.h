@@ -59,13 +59,12 @@ struct SolidOptions {
 /// (grid_over()) has rows that count as doubtful only because a crossing outside the grid is unknown.
 class SolidFill {
 public:
+    /// Crossings take 4 bytes per row, and 4 per crossing of the rows that are crossed an even number of
+    /// times.
     /// @param whole    the region that all tiles lie in
-    /// @param options  SolidRule::outside is not among the rules of this class, but that of Outside.
-    /// Crossings
-    ///                 take 4 bytes per row, and 4 per crossing of the rows that are crossed an even number
-    ///                 of times.
-    /// @throws Error  Fault::memory if the crossings take more than they may; the message says what would
-    ///                fit. Fault::usage if the rule is SolidRule::outside.
+    /// @param options  any rule but SolidRule::outside, which is that of Outside
+    /// @throws Error (Fault::memory)  if the crossings take more than they may; the message says what fits.
+    /// @throws Error (Fault::usage)   if the rule is SolidRule::outside.
     SolidFill(const Surface& surface, const Region& whole, const SolidOptions& options = {});
 
     /// Sets the bits of voxels that are inside.
