@@ -1,6 +1,7 @@
 #include "app/terminal/png.h"
 
 #include <cstdint>
+#include <exception>
 #include <new>
 #include <vector>
 
@@ -21,13 +22,23 @@ void write_png(const optics::Image& image, const std::filesystem::path& path) {
             rgb[i * channels + c] = image.rgba[i * 4 + c];
     }
     OutputFile file(path);
+    // An exception must not leave through stb_image_write, which would not free what it holds.
+    struct Target {
+        OutputFile& file;
+        std::exception_ptr failure;
+    } target{file, nullptr};
     const auto append = [](void* out, void* data, int size_bytes) {
-        static_cast<OutputFile*>(out)->write(data, std::size_t(size_bytes));
+        auto& to = *static_cast<Target*>(out);
+        try {
+            if (!to.failure) to.file.write(data, std::size_t(size_bytes));
+        } catch (...) {
+            to.failure = std::current_exception();
+        }
     };
-    if (stbi_write_png_to_func(append, &file, image.width, image.height, channels, rgb.data(),
-                               image.width * channels) == 0) {
-        throw std::bad_alloc();  // stb_image_write has no other failure
-    }
+    const int written = stbi_write_png_to_func(append, &target, image.width, image.height, channels,
+                                               rgb.data(), image.width * channels);
+    if (target.failure) std::rethrow_exception(target.failure);
+    if (written == 0) throw std::bad_alloc();  // stb_image_write has no other failure
     file.commit();
 }
 
