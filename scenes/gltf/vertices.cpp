@@ -62,7 +62,7 @@ void read_colors(const VertexSource& source, Primitive& result) {
         glm::u16vec4 steps;
         for (int c = 0; c < 4; ++c) {  // the comparison is false for NaN, too
             const float clamped = color[c] > 0.0F ? std::min(color[c], 1.0F) : 0.0F;
-            steps[c] = static_cast<std::uint16_t>(clamped * 65535.0F + 0.5F);
+            steps[c] = static_cast<std::uint16_t>(std::lround(clamped * 65535.0F));
         }
         result.colors.push_back(steps);
     }
