@@ -18,10 +18,11 @@ using AddBench = void (*)(CLI::App&, Work&);
 /// be writable.
 /// @param arguments  without the program's name
 /// @throws Error     Fault::usage: if the verb is missing or unknown, or an option is invalid.
-[[nodiscard]] Work read_command_line(const std::vector<std::string>& arguments, AddBench add_bench = nullptr);
+[[nodiscard]] Work read_command_line(const std::vector<std::string>& arguments,
+                                     AddBench add_bench_verb = nullptr);
 
 /// All of a program's main(): secures its streams, does the work, and tells errors.
 /// @return the exit code
-[[nodiscard]] int run_command(int argc, char** argv, AddBench add_bench = nullptr);
+[[nodiscard]] int run_command(int argc, char** argv, AddBench add_bench_verb = nullptr);
 
 }  // namespace cairn::app

@@ -84,13 +84,17 @@ TEST(SolidFill, FillsABoxExactlyWhereverItsFacesLie) {
     }
 }
 
+/// Makes cubes from a low to a high corner, in voxels along every axis.
+auto cubes_in(const Region& region, Random& random) {
+    return [side = std::int64_t(region.voxel_side()), &random](std::int64_t low, std::int64_t high) {
+        return box(glm::i64vec3(low * side), glm::i64vec3(high * side), random);
+    };
+}
+
 TEST(SolidFill, TellsNestedShellsCavitiesAndOverlapsApart) {
     Random random(12);
     const Region region = cube(5);
-    const std::int64_t side = region.voxel_side();
-    const auto at = [&](std::int64_t low, std::int64_t high) {
-        return box(glm::i64vec3(low * side), glm::i64vec3(high * side), random);
-    };
+    const auto at = cubes_in(region, random);
     const auto voxels = [&](const Mesh& mesh) { return interior(mesh, region).count(); };
     EXPECT_EQ(voxels(at(4, 24)), 20U * 20U * 20U);
     EXPECT_EQ(voxels(joined(at(4, 24), at(10, 16))), 20U * 20U * 20U) << "nested shells are solid";
@@ -103,10 +107,7 @@ TEST(SolidFill, TellsNestedShellsCavitiesAndOverlapsApart) {
 TEST(SolidFill, ByParityCountsCrossingsAloneSoThatOverlapsAndNestedShellsAreEmpty) {
     Random random(21);
     const Region region = cube(5);
-    const std::int64_t side = region.voxel_side();
-    const auto at = [&](std::int64_t low, std::int64_t high) {
-        return box(glm::i64vec3(low * side), glm::i64vec3(high * side), random);
-    };
+    const auto at = cubes_in(region, random);
     const auto voxels = [&](const Mesh& mesh) { return interior(mesh, region, SolidRule::parity).count(); };
     const auto cube_of = [](std::uint64_t length) { return length * length * length; };
     for (const bool flip : {false, true}) {

@@ -1,7 +1,6 @@
 // The raster methods on whole scenes, against the exact reference: the voxels that each misses and adds.
 #include <array>
 #include <map>
-#include <queue>
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 #include "reference/exact_voxels.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
+#include "tests/support/flood_search.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/lattice_surface.h"
 #include "voxelizer/methods/raster_voxelizer.h"
@@ -86,35 +86,12 @@ INSTANTIATE_TEST_SUITE_P(Builtin, RasterScene,
                                                   {Method::three_axis, {85, 100, 0.01}},
                                                   {Method::three_axis_conservative, {0, 0, 40}}}}));
 
-/// Free voxels that a walk through faces of voxels reaches from outside.
-BitGrid reached_from_outside(const BitGrid& walls) {
-    BitGrid reached(walls.size);
-    std::queue<glm::ivec3> open;
-    const auto visit = [&](const glm::ivec3& v) {
-        if (glm::any(glm::lessThan(v, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(v, walls.size)))
-            return;
-        if (walls.at(v) || reached.at(v)) return;
-        reached.set(v);
-        open.push(v);
-    };
-    for (visit(glm::ivec3(0)); !open.empty(); open.pop()) {
-        for (int axis = 0; axis < 3; ++axis) {
-            for (const int step : {-1, 1}) {
-                glm::ivec3 v = open.front();
-                v[axis] += step;
-                visit(v);
-            }
-        }
-    }
-    return reached;
-}
-
 /// Voxels inside a closed surface that a walk through the walls found by `method` reaches all the same.
 std::uint64_t leaks(Method method, const Surface& surface, std::uint64_t& inside_count) {
     const Region region = whole(surface.grid);
     const BitGrid truth = reference::exact_voxels(surface, region);
-    const BitGrid outside = reached_from_outside(truth);
-    const BitGrid reached = reached_from_outside(RasterVoxelizer(method).voxelize(upload(surface), region));
+    const BitGrid outside = searched(truth);
+    const BitGrid reached = searched(RasterVoxelizer(method).voxelize(upload(surface), region));
     std::uint64_t leaked = 0;
     inside_count = 0;
     for (int z = 0; z < region.size.z; ++z) {

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "voxelizer/solid/solid_triangles.h"
+#include "voxelizer/solid/word_bits.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -51,16 +52,6 @@ Verdict verdict_on(Row row, SolidRule rule, int voxel) {
         if (first <= voxel && voxel < end) verdict = {true, whole};
     });
     return verdict;
-}
-
-/// Bits from first up to, not including, end.
-void set_bits(std::uint32_t* words, int first, int end) {
-    while (first < end) {
-        const int stop = std::min(end, (first / 32 + 1) * 32);
-        const std::uint32_t up_to = stop % 32 == 0 ? ~0U : (1U << (stop % 32)) - 1U;
-        words[first / 32] |= up_to & (~0U << (first % 32));
-        first = stop;
-    }
 }
 
 /// A mixing of 64 bits (the finalizer of SplitMix64: Steele, Lea and Flood 2014).

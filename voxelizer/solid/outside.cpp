@@ -7,13 +7,10 @@
 #include <tbb/concurrent_vector.h>
 #include <tbb/parallel_for.h>
 
+#include "voxelizer/solid/word_bits.h"
+
 namespace cairn::voxelizer {
 namespace {
-
-/// The lowest bits of a word.
-std::uint32_t low_bits(int count) {
-    return count >= 32 ? ~0U : (1U << count) - 1U;
-}
 
 /// Spreads bits along a word, within those that are free (Kogge and Stone 1973: steps of doubled length).
 std::uint32_t spread(std::uint32_t bits, std::uint32_t free) {
@@ -272,14 +269,6 @@ BitGrid Outside::copied(const glm::ivec3& tile_origin, const glm::ivec3& tile_si
         }
     });
     return tile;
-}
-
-BitGrid Outside::reached(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const {
-    return copied(tile_origin, tile_size, [](const Word& word) { return word.reached; });
-}
-
-BitGrid Outside::enclosed(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const {
-    return copied(tile_origin, tile_size, [](const Word& word) { return word.enclosed; });
 }
 
 BitGrid Outside::solid(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const {

@@ -55,11 +55,7 @@ public:
     ///               are 0.
     [[nodiscard]] Word word_at(const glm::ivec3& voxel) const;
 
-    /// Of a tile's voxels that the surface does not touch, those that the outside reaches; after flood().
-    [[nodiscard]] BitGrid reached(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const;
-    /// And those that it does not reach.
-    [[nodiscard]] BitGrid enclosed(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const;
-    /// Those that it does not reach, together with the surface's own.
+    /// A tile's voxels that the outside does not reach, the surface's own among them; after flood().
     [[nodiscard]] BitGrid solid(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const;
     /// The surface's own, as they were added.
     [[nodiscard]] BitGrid surface(const glm::ivec3& tile_origin, const glm::ivec3& tile_size) const;

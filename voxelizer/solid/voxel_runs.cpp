@@ -4,6 +4,8 @@
 #include <bit>
 #include <tuple>
 
+#include "voxelizer/solid/word_bits.h"
+
 namespace cairn::voxelizer {
 namespace {
 
@@ -64,10 +66,8 @@ std::span<const VoxelRun> VoxelRuns::row(int y, int z) const {
 
 void VoxelRuns::copy_run(const VoxelRun& run, const glm::ivec3& tile_origin, const glm::ivec3& row,
                          BitGrid& tile) {
-    const int first = std::max(run.first.x - tile_origin.x, 0);
-    const int end = std::min(run.end() - tile_origin.x, tile.size.x);
-    for (int x = first; x < end; ++x)
-        tile.set(row + glm::ivec3(x, 0, 0));
+    set_bits(&tile.words[tile.word_index(0, row.y, row.z)], std::max(run.first.x - tile_origin.x, 0),
+             std::min(run.end() - tile_origin.x, tile.size.x));
 }
 
 }  // namespace cairn::voxelizer
