@@ -13,6 +13,8 @@ Limits query_limits() {
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &limits.texture_3d_size);
     limits.shader_storage_bytes = std::size_t(storage);
     limits.texture_buffer_texels = std::size_t(texels);
+    if (GLAD_GL_EXT_texture_filter_anisotropic != 0)
+        glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &limits.anisotropy);
     return limits;
 }
 

@@ -1,15 +1,19 @@
 #include "renderer/shadow/shadow_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <span>
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "gl/buffer_offset.h"
+#include "gl/limits.h"
 #include "shaders/interop/shadow_map.h"
+#include "voxelizer/surface/texture_mips.h"
 
 namespace cairn::renderer {
 namespace {
@@ -33,20 +37,39 @@ GLint wrap_mode(scenes::Wrap wrap) {
     return GL_CLAMP_TO_EDGE;
 }
 
-gl::TextureHandle make_texture(int width, int height, const std::uint8_t* rgba, scenes::Wrap wrap_s,
-                               scenes::Wrap wrap_t) {
+/// Texels that a sampler mixes for a pixel that sees a surface at a low angle, where the driver can.
+constexpr float wanted_anisotropy = 8.0F;
+
+/// @param levels  RGBA8 in a word, level after level.
+gl::TextureHandle make_texture(const glm::ivec2& size, std::span<const std::uint32_t> levels,
+                               scenes::Wrap wrap_s, scenes::Wrap wrap_t) {
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &id);
     gl::TextureHandle texture(id);
-    const int levels = std::bit_width(unsigned(std::max(width, height)));
-    glTextureStorage2D(id, levels, GL_SRGB8_ALPHA8, width, height);
-    glTextureSubImage2D(id, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
-    glGenerateTextureMipmap(id);
+    glTextureStorage2D(id, GLsizei(std::bit_width(unsigned(std::max(size.x, size.y)))), GL_SRGB8_ALPHA8, size.x,
+                       size.y);
+    glm::ivec2 side = size;
+    std::size_t first = 0;
+    for (GLint level = 0; first < levels.size(); ++level) {
+        glTextureSubImage2D(id, level, 0, 0, side.x, side.y, GL_RGBA, GL_UNSIGNED_BYTE, &levels[first]);
+        first += std::size_t(side.x) * std::size_t(side.y);
+        side = voxelizer::coarser_size(side);
+    }
     glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    const float most_anisotropy = gl::query_limits().anisotropy;
+    if (most_anisotropy > 1.0F)
+        glTextureParameterf(id, GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(wanted_anisotropy, most_anisotropy));
     glTextureParameteri(id, GL_TEXTURE_WRAP_S, wrap_mode(wrap_s));
     glTextureParameteri(id, GL_TEXTURE_WRAP_T, wrap_mode(wrap_t));
     return texture;
+}
+
+/// The lowest texel alpha, 0 to 255, that passes a material's mask where vertices have alpha 1.
+std::uint32_t lowest_passing_alpha(const scenes::Material& material) {
+    if (material.alpha_mode != scenes::AlphaMode::mask || !(material.alpha_cutoff > 0.0F)) return 0;
+    const double least = std::ceil(255.0 * double(material.alpha_cutoff) / double(material.base_color.a));
+    return least <= 255.0 ? std::uint32_t(least) : 256U;
 }
 
 /// The matrix that transforms normals if `m` transforms points, whatever the scales of `m`. It keeps the
@@ -96,42 +119,44 @@ ShadowMesh::ShadowMesh(const scenes::Scene& scene, const scenes::Snapshot& snaps
     triangle_count_ = indices.size() / 3;
     vertices_ = gl::Buffer::of(std::span<const Vertex>(vertices), "vertices of a shadow map");
     indices_ = gl::Buffer::of(std::span<const std::uint32_t>(indices), "triangles of a shadow map");
-    add_textures(scene);
+    texture_places_.clear();
     bind_attributes();
 }
 
 void ShadowMesh::add_draw(const scenes::Scene& scene, const scenes::Primitive& primitive,
                           std::size_t first_index) {
-    Draw draw{.first_index = first_index,
-              .index_count = primitive.indices.size(),
-              .texture = scene.textures.size()};
+    Draw draw{.first_index = first_index, .index_count = primitive.indices.size()};
+    int texture = -1;
+    std::uint32_t lowest_alpha = 0;
     if (primitive.material >= 0) {
         const scenes::Material& material = scene.materials[std::size_t(primitive.material)];
         draw.base_color = material.base_color;
         if (material.alpha_mode == scenes::AlphaMode::mask) draw.alpha_cutoff = material.alpha_cutoff;
-        if (material.texture >= 0) draw.texture = std::size_t(material.texture);
+        lowest_alpha = lowest_passing_alpha(material);
+        texture = material.texture;
+        if (texture >= 0 && scene.textures[std::size_t(texture)].image < 0) texture = -1;
     }
+    draw.texture = texture_of(scene, texture, texture >= 0 ? lowest_alpha : 0);
     draws_.push_back(draw);
 }
 
-void ShadowMesh::add_textures(const scenes::Scene& scene) {
-    std::vector<bool> used(scene.textures.size() + 1, false);
-    for (const Draw& draw : draws_)
-        used[draw.texture] = true;
-    constexpr std::uint8_t white[4] = {255, 255, 255, 255};
-    for (std::size_t i = 0; i <= scene.textures.size(); ++i) {
-        const bool has_image = i < scene.textures.size() && scene.textures[i].image >= 0;
-        if (!used[i]) {
-            textures_.emplace_back();
-        } else if (has_image) {
-            const scenes::Texture& texture = scene.textures[i];
-            const scenes::Image& image = scene.images[std::size_t(texture.image)];
-            textures_.push_back(
-                make_texture(image.width, image.height, image.rgba.data(), texture.wrap_s, texture.wrap_t));
-        } else {
-            textures_.push_back(make_texture(1, 1, white, scenes::Wrap::repeat, scenes::Wrap::repeat));
-        }
+std::size_t ShadowMesh::texture_of(const scenes::Scene& scene, int number, std::uint32_t lowest_alpha) {
+    const auto [place, is_new] = texture_places_.try_emplace({number, lowest_alpha}, textures_.size());
+    if (!is_new) return place->second;
+    if (number < 0) {
+        constexpr std::array<std::uint32_t, 1> white = {0xFFFFFFFFU};
+        textures_.push_back(
+            make_texture(glm::ivec2(1), white, scenes::Wrap::repeat, scenes::Wrap::repeat));
+        return place->second;
     }
+    const scenes::Texture& texture = scene.textures[std::size_t(number)];
+    const scenes::Image& image = scene.images[std::size_t(texture.image)];
+    const glm::ivec2 size(image.width, image.height);
+    std::vector<std::uint32_t> texels(std::size_t(size.x) * std::size_t(size.y));
+    std::memcpy(texels.data(), image.rgba.data(), texels.size() * sizeof(texels[0]));
+    textures_.push_back(make_texture(size, voxelizer::filled_levels(texels, size, lowest_alpha),
+                                     texture.wrap_s, texture.wrap_t));
+    return place->second;
 }
 
 void ShadowMesh::bind_attributes() {

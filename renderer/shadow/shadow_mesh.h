@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -40,14 +43,18 @@ private:
         std::size_t texture = 0;  ///< into textures_
     };
 
-    void add_textures(const scenes::Scene& scene);
+    /// Place in textures_ of a texture as a mask with this lowest alpha sees it; of a white one if the number
+    /// is -1.
+    std::size_t texture_of(const scenes::Scene& scene, int number, std::uint32_t lowest_alpha);
     void add_draw(const scenes::Scene& scene, const scenes::Primitive& primitive, std::size_t first_index);
     void bind_attributes();
 
     glm::dvec3 origin_{0.0};
     std::size_t triangle_count_ = 0;
     std::vector<Draw> draws_;
-    std::vector<gl::TextureHandle> textures_;  ///< textures of the scene, then a white one
+    std::vector<gl::TextureHandle> textures_;
+    /// By number of the scene's texture, and lowest alpha; only while the mesh is made.
+    std::map<std::pair<int, std::uint32_t>, std::size_t> texture_places_;
     gl::Buffer vertices_;
     gl::Buffer indices_;
     gl::VertexArrayHandle vertex_array_;

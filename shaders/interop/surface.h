@@ -10,7 +10,7 @@
 #define SSBO_SURFACE_TRIANGLES 1   // SurfaceTriangle
 #define SSBO_SURFACE_ATTRIBUTES 2  // SurfaceAttributes per vertex
 #define SSBO_SURFACE_MATERIALS 3   // SurfaceMaterial
-#define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each; then the counts of masks
+#define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each; mip levels; counts of masks
 #define ATTRIBUTE_POSITION 0       // position of a vertex, when the surface is rasterized
 
 // Texture coordinates are rounded to 1 / TEXCOORD_UNITS when a surface is built, and to 1 / TEXEL_UNITS of a
@@ -55,7 +55,10 @@ struct SurfaceMaterial {
     // If masked and textured: place in SSBO_SURFACE_TEXELS of (width + 1) * (height + 1) counts. Count (x, y)
     // is the number of texels left of x and above y that pass, for vertex alpha 65535.
     uint passing_offset;
-    uint padding;
+    // Place in SSBO_SURFACE_TEXELS of the texture's mip level 1, behind which the others lie
+    // (voxelizer/surface/texture_mips.h); 0: there are none. Those of a masked material leave out the texels
+    // that do not pass for vertex alpha 65535, and their alpha is the share of those that pass.
+    uint mip_offset;
 };
 
 #ifdef __cplusplus

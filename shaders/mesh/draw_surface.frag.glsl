@@ -21,7 +21,7 @@ void main() {
     if (!is_shown(point, material)) discard;
 #endif
     const vec3 plane = dot(triangle.normal, seen.direction) > 0.0 ? -triangle.normal : triangle.normal;
-    const vec3 color = color_at(point, material);
+    const vec3 color = color_over(point, pixel_footprint(triangle, hit, seen), material);
     surface = uvec4(packHalf2x16(color.rg), packHalf2x16(vec2(color.b, 1.0)),
                     encode_normal(normal_at(point, triangle.normal)), encode_normal(plane));
 }

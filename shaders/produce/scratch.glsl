@@ -14,7 +14,8 @@
 // There are two arrays, so that empty voxels, which are the most, cost only their masks.
 //     masks      2 words per voxel, mip after mip: 4^3 finer voxels, bit x + 4 (y + 4 z)
 //     sums       SUM_WORDS per voxel, from word `sums_offset` on
-#define SUM_WEIGHT 0               // number of finer voxels, summed over the triangles
+// Area of the surface, in faces of a finer voxel, summed over the triangles; WEIGHT_UNIT = 1.
+#define SUM_WEIGHT 0
 #define SUM_NORMAL 1               // 3 words: weighted normals, NORMAL_UNIT = 1
 // 5 words: products of the normals' components, xx, xy, xz, yy, yz, weighted alike.
 #define SUM_MOMENTS 4
@@ -24,8 +25,9 @@
 #else
 #define SUM_WORDS 9
 #endif
+#define WEIGHT_UNIT 16.0
 #define NORMAL_UNIT 511.0
-#define COLOR_UNIT 1023.0
+#define COLOR_UNIT 2047.0
 // A greater weight would overflow the sums: once it is passed, further triangles, in the order of the
 // threads, are left out.
 #define WEIGHT_LIMIT 1048576u

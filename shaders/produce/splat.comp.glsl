@@ -22,35 +22,57 @@ layout(std430, binding = SSBO_BRICK_PAIRS) readonly buffer PairBlock { BrickPair
 uniform uint pair_count;
 
 // The thread's triangle, for attributes. Floats suffice here, because exact_triangle.glsl decides which
-// voxels are met.
+// voxels are met. Lengths are in sides of a finer voxel, from the first vertex.
 struct Patch {
     uvec3 vertices;
     SurfaceMaterial material;
-    vec3 corner, edge1, edge2;  // lattice units
+    ivec3 corner;               // the first vertex, in lattice units
+    vec3 edge1, edge2;
     float d11, d12, d22;        // scalar products of the edges
     vec3 normal;                // normal of the triangle; 0 if it has no area
+    float area;
+    vec3 low, size;             // its bounding box
+    int axis;                   // the axis that it is most across
+    // Changes of the weights of the second and third vertex on the triangle's plane, per length along the
+    // two other axes.
+    vec2 weights_u, weights_v;
 };
 
-Patch make_patch(uvec3 vertices, SurfaceMaterial material, ivec3 a, ivec3 b, ivec3 c) {
+// The two other axes and then the one that the triangle is most across.
+vec3 turned(vec3 p, int axis) { return axis == 0 ? p.yzx : axis == 1 ? p.zxy : p; }
+
+Patch make_patch(uvec3 vertices, SurfaceMaterial material, ivec3 a, ivec3 b, ivec3 c, float side) {
     Patch s;
     s.vertices = vertices;
     s.material = material;
-    s.corner = vec3(a);
-    s.edge1 = vec3(b - a);
-    s.edge2 = vec3(c - a);
+    s.corner = a;
+    s.edge1 = vec3(b - a) / side;
+    s.edge2 = vec3(c - a) / side;
     s.d11 = dot(s.edge1, s.edge1);
     s.d12 = dot(s.edge1, s.edge2);
     s.d22 = dot(s.edge2, s.edge2);
     const vec3 n = cross(s.edge1, s.edge2);
     const float size = length(n);
     s.normal = size > 0.0 ? n / size : vec3(0.0);
+    s.area = 0.5 * size;
+    s.low = min(vec3(0.0), min(s.edge1, s.edge2));
+    s.size = max(vec3(0.0), max(s.edge1, s.edge2)) - s.low;
+    const vec3 across = abs(n);
+    s.axis = across.x >= across.y && across.x >= across.z ? 0 : across.y >= across.z ? 1 : 2;
+    const vec3 e1 = turned(s.edge1, s.axis);
+    const vec3 e2 = turned(s.edge2, s.axis);
+    const float twice = e1.x * e2.y - e1.y * e2.x;
+    const float scale = twice != 0.0 ? 1.0 / twice : 0.0;
+    s.weights_u = vec2(e2.y, -e1.y) * scale;
+    s.weights_v = vec2(-e2.x, e1.x) * scale;
     return s;
 }
 
+SurfacePoint point_of(Patch s, vec2 w) { return SurfacePoint(s.vertices, vec3(1.0 - w.x - w.y, w)); }
+
 // The point of the triangle under a point of space; a point that falls beside the triangle is moved to the
 // triangle.
-SurfacePoint point_under(Patch s, vec3 lattice) {
-    const vec3 d = lattice - s.corner;
+vec2 weights_under(Patch s, vec3 d) {
     const float p1 = dot(d, s.edge1);
     const float p2 = dot(d, s.edge2);
     const float area = s.d11 * s.d22 - s.d12 * s.d12;
@@ -61,15 +83,23 @@ SurfacePoint point_under(Patch s, vec3 lattice) {
         w.x = p1 / s.d11;
     }
     w = clamp(w, 0.0, 1.0);
-    w /= max(w.x + w.y, 1.0);
-    return SurfacePoint(s.vertices, vec3(1.0 - w.x - w.y, w));
+    return w / max(w.x + w.y, 1.0);
 }
 
-// The marks of the triangle in the 4^3 finer voxels of voxel `v`. A finer row in doubt is marked as far as
+// The low corner of a voxel, or of a finer one, whose sides are `side` lattice units.
+vec3 from_corner(Patch s, ivec3 v, int side, float finer_side) { return vec3(v * side - s.corner) / finer_side; }
+
+#if HAS_MASK
+bool is_masked(Patch s) { return (s.material.flags >> MATERIAL_MASK_BIT & 1u) != 0u; }
+// Whether the alpha mask leaves surface at a point.
+bool is_kept(Patch s, vec2 w) { return alpha_at(point_of(s, w), s.material) * ALPHA_SLACK >= s.material.alpha_cutoff; }
+#endif
+
+// The marks of the triangle in the 4^3 finer voxels of voxel `v`, whose low corner is `low`. A finer row in doubt is marked as far as
 // the triangle may reach: coverage is an estimate, and whether the voxel is occupied has been decided
 // exactly. Of an alpha-masked triangle those finer voxels are marked under whose centres the mask leaves
 // surface.
-uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v) {
+uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v, vec3 low) {
     uvec2 mask = uvec2(0u);
     for (int i = 0; i < 16; ++i) {
         const ivec2 row = 4 * v.yz + ivec2(i & 3, i >> 2);
@@ -80,10 +110,10 @@ uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v) {
                            all(lessThanEqual(row, fine.high.yz));
         uint bits = meets ? (0xFu << uint(span.x & 3)) & (0xFu >> uint(3 - span.y & 3)) : 0u;
 #if HAS_MASK
-        if ((s.material.flags >> MATERIAL_MASK_BIT & 1u) != 0u) {
+        if (is_masked(s)) {
             for (int x = 0; x < 4; ++x) {
-                const vec3 centre = (vec3(4 * v.x + x, row) + 0.5) * float(side_of(fine));
-                if (alpha_at(point_under(s, centre), s.material) < s.material.alpha_cutoff) bits &= ~(1u << x);
+                const vec3 centre = low + vec3(x, i & 3, i >> 2) + 0.5;
+                if (!is_kept(s, weights_under(s, centre))) bits &= ~(1u << x);
             }
         }
 #endif
@@ -93,7 +123,7 @@ uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v) {
     return mask;
 }
 
-// Mean place of the marks, in voxels from the low corner of their voxel.
+// Mean place of the marks, in finer voxels from the low corner of their voxel.
 vec3 middle_of(uvec2 mask, float count) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 4; ++i) {
@@ -104,23 +134,97 @@ vec3 middle_of(uvec2 mask, float count) {
         sum += (float(i) + 0.5) * vec3(bitCount(mask.x & x) + bitCount(mask.y & x),
                                        bitCount(mask.x & y) + bitCount(mask.y & y), bitCount(in_z));
     }
-    return sum / (4.0 * count);
+    return sum / count;
+}
+
+// The triangle's part in a voxel, as its attributes see it.
+struct Part {
+    float area;   // in faces of a finer voxel
+    vec2 middle;  // weights of its middle
+    vec3 color;
+};
+
+// Sums over the samples of a part: 4^2 points, one on the middle line of each row of finer voxels along the
+// axis that the triangle is most across. Each stands for the parallelogram of the triangle's plane over its
+// row, so that together they tile the part; its area on that axis is 1.
+Part sampled_part(Patch s, vec3 low) {
+    const vec3 first = turned(low, s.axis);
+    const vec2 start = first.x * s.weights_u + first.y * s.weights_v;
+    const vec2 edges_across = vec2(turned(s.edge1, s.axis).z, turned(s.edge2, s.axis).z);
+    Part part = Part(0.0, vec2(0.0), vec3(0.0));
+    for (int i = 0; i < 16; ++i) {
+        const vec2 w = start + (float(i & 3) + 0.5) * s.weights_u + (float(i >> 2) + 0.5) * s.weights_v;
+        const float height = dot(w, edges_across) - first.z;
+        if (w.x < 0.0 || w.y < 0.0 || w.x + w.y > 1.0 || height < 0.0 || height >= 4.0) continue;
+#if HAS_MASK
+        if (is_masked(s) && !is_kept(s, w)) continue;
+#endif
+        part.area += 1.0;
+        part.middle += w;
+#if HAS_COLOR
+        if (s.material.width != 0u)
+            part.color += color_over(point_of(s, w), Footprint(s.weights_u, s.weights_v), s.material);
+#endif
+    }
+    return part;
+}
+
+// The part of a triangle that is so small, or so thin, that no sample lies on it.
+Part small_part(Patch s, vec3 low, vec2 middle) {
+    // The share of its bounding box that lies in the voxel.
+    const vec3 inside = max(min(s.low + s.size, low + 4.0) - max(s.low, low), 0.0);
+    const vec3 share = mix(vec3(1.0), inside / max(s.size, vec3(1e-20)), greaterThan(s.size, vec3(0.0)));
+    Part part = Part(s.area * share.x * share.y * share.z, middle, vec3(0.0));
+#if HAS_COLOR
+    // About half of the triangle's own extent, if that is less than a finer voxel.
+    const float shrunk = min(1.0, sqrt(max(s.area, 0.0)));
+    part.color = color_over(point_of(s, middle), Footprint(shrunk * s.weights_u, shrunk * s.weights_v), s.material);
+#endif
+    return part;
+}
+
+// A place in the voxel near which the triangle is shown.
+vec3 shown_place(Patch s, uvec2 mask, float count) {
+#if HAS_MASK
+    if (is_masked(s)) {  // the middle may lie in a hole; the middles of marks do not
+        const int mark = mask.x != 0u ? findLSB(mask.x) : 32 + findLSB(mask.y);
+        return vec3(mark & 3, mark >> 2 & 3, mark >> 4) + 0.5;
+    }
+#endif
+    return middle_of(mask, count);
+}
+
+Part part_in_voxel(Patch s, vec3 low, uvec2 mask, float count) {
+    Part part = sampled_part(s, low);
+    if (part.area == 0.0) return small_part(s, low, weights_under(s, low + shown_place(s, mask, count)));
+    part.middle /= part.area;
+#if HAS_COLOR
+    // What is linear over the part has its mean in the middle.
+    part.color = s.material.width != 0u
+                     ? part.color / part.area
+                     : s.material.base_color.rgb * vertex_color_at(point_of(s, part.middle)).rgb;
+#endif
+    const vec3 across = abs(s.normal);
+    part.area /= max(max(across.x, across.y), across.z);
+    return part;
 }
 
 // Adds the triangle's part in one voxel; `voxel` is its number in the scratch.
 void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
-    const uvec2 mask = fine_mask(fine, s, v);
+    const float side = float(side_of(fine));
+    const vec3 low = from_corner(s, v, 4 * side_of(fine), side);
+    const uvec2 mask = fine_mask(fine, s, v, low);
     const int count = bitCount(mask.x) + bitCount(mask.y);
     if (count == 0) return;
     if (mask.x != 0u) atomicOr(scratch[2u * voxel], mask.x);
     if (mask.y != 0u) atomicOr(scratch[2u * voxel + 1u], mask.y);
+    const Part part = part_in_voxel(s, low, mask, float(count));
+    const float weight = max(round(part.area * WEIGHT_UNIT), 1.0);
     const uint sums = sums_offset + voxel * uint(SUM_WORDS);
-    if (atomicAdd(scratch[sums + SUM_WEIGHT], uint(count)) > WEIGHT_LIMIT) return;
+    if (atomicAdd(scratch[sums + SUM_WEIGHT], uint(weight)) > WEIGHT_LIMIT) return;
 
-    const float weight = float(count);
-    const SurfacePoint p = point_under(s, (vec3(v) + middle_of(mask, weight)) * float(4 * side_of(fine)));
     // Two's complement: negative sums wrap and come out right.
-    const vec3 normal = normal_at(p, s.normal);
+    const vec3 normal = normal_at(point_of(s, part.middle), s.normal);
     const vec3 weighted = normal * (weight * NORMAL_UNIT);
     const ivec3 n = ivec3(round(weighted));
     atomicAdd(scratch[sums + SUM_NORMAL], uint(n.x));
@@ -134,7 +238,7 @@ void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
     atomicAdd(scratch[sums + SUM_MOMENTS + 3], uint(by_y.x));
     atomicAdd(scratch[sums + SUM_MOMENTS + 4], uint(by_y.y));
 #if HAS_COLOR
-    const uvec3 c = uvec3(round(clamp(color_at(p, s.material), 0.0, 1.0) * weight * COLOR_UNIT));
+    const uvec3 c = uvec3(round(clamp(part.color, 0.0, 1.0) * weight * COLOR_UNIT));
     atomicAdd(scratch[sums + SUM_COLOR], c.x);
     atomicAdd(scratch[sums + SUM_COLOR + 1], c.y);
     atomicAdd(scratch[sums + SUM_COLOR + 2], c.z);
@@ -158,7 +262,8 @@ void main() {
     const ivec3 c = surface_position(corners.z);
     const ExactTriangle coarse = exact_triangle(a, b, c, size);
     const ExactTriangle fine = exact_triangle(a, b, c, FINER(size));
-    const Patch s = make_patch(corners, surface_materials[surface_triangles[triangle].material], a, b, c);
+    const Patch s = make_patch(corners, surface_materials[surface_triangles[triangle].material], a, b, c,
+                               float(side_of(fine)));
 
     const ivec3 region_low = (tile.low >> mip) - 1;
     const ivec3 low = max(coarse.low, region_low + ivec3(0, first_row));

@@ -4,8 +4,8 @@
 // The piece is computed in the triangle's barycentric weights, where each side of the voxel is a line whose
 // values at the three vertices are whole numbers. So large triangles lose no accuracy, and triangles without
 // area still have a piece. The piece is cut in a fan of triangles. If a texture may vary on the piece, each
-// triangle of the fan is cut in `rows`^2 equal parts, about as small as a texel. Each part is sampled at its
-// centroid.
+// triangle of the fan is cut in `rows`^2 equal parts, about as small as a texel if ATTRIBUTE_SAMPLE_ROWS
+// suffices. Each part is sampled at its centroid, by a mean over about its area.
 #include "interop/surface.h"
 #include "interop/voxelize.h"
 #include "voxelize/attribute_pairs.glsl"
@@ -113,10 +113,6 @@ void gather(inout Gathered sum, float weight, vec3 color, vec3 normal) {
 }
 
 #if HAS_MASK
-bool passes(float texel_alpha, float vertex_alpha, SurfaceMaterial material) {
-    return uint(round(texel_alpha * 255.0)) * uint(round(vertex_alpha * 255.0 * 256.0)) >= material.alpha_threshold;
-}
-
 #define NOWHERE_WEIGHT 1.0e-6
 
 // The colour at a sample that the mask cuts away, for a piece that has no other samples: the voxel is
@@ -139,9 +135,9 @@ vec3 color_nearby(SurfacePoint p, SurfaceMaterial material, vec3 sample_color, o
 #endif
 
 // Adds one sample to `shown` or, if a mask cuts it away, to `hidden`.
-void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, SurfaceMaterial material,
-                  vec3 triangle_normal, float weight) {
-    const vec3 color = color_at(p, material);
+void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, Footprint footprint,
+                  SurfaceMaterial material, vec3 triangle_normal, float weight) {
+    const vec3 color = color_over(p, footprint, material);
     const vec3 normal = normal_at(p, triangle_normal);
 #if HAS_MASK
     if ((material.flags >> MATERIAL_MASK_BIT & 1u) != 0u) {
@@ -184,9 +180,12 @@ void main() {
         const dvec2 q = corners[piece.first + min(fan + 2, piece.count - 1)];
         const double share = abs((p.x - first.x) * (q.y - first.y) - (p.y - first.y) * (q.x - first.x));
         const float faces = max(float(share * faces_of_triangle), 1.0e-20);
+        // A parallelogram as large as a part.
+        const float part_side = 0.70710678 / float(rows);
+        const Footprint footprint = Footprint(part_side * vec2(p - first), part_side * vec2(q - first));
         for (int part = 0; part < parts; ++part) {
             const vec2 middle = centroid_of_part(vec2(first), vec2(p), vec2(q), part, rows);
-            sample_point(shown, hidden, point_at(triangle, middle), material, triangle_normal, faces);
+            sample_point(shown, hidden, point_at(triangle, middle), footprint, material, triangle_normal, faces);
         }
     }
     float weight = max(shown.weight, ATTRIBUTE_LEAST_WEIGHT);

@@ -5,9 +5,11 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <span>
 #include <tuple>
 
 #include "base/error.h"
+#include "voxelizer/surface/texture_mips.h"
 
 namespace cairn::voxelizer {
 namespace {
@@ -21,6 +23,11 @@ std::uint32_t alpha_threshold(const scenes::Material& material) {
     if (!(alpha > 0.0)) return no_alpha_passes;
     return std::uint32_t(
         std::min(std::round(cutoff / alpha * (255.0 * 255.0 * 256.0)), double(no_alpha_passes)));
+}
+
+/// The lowest texel alpha, 0 to 255, that passes for the highest vertex alpha.
+std::uint32_t lowest_passing_alpha(std::uint32_t alpha_threshold) {
+    return (alpha_threshold + 255 * 256 - 1) / (255 * 256);
 }
 
 /// Whether a triangle spans more texels than its mask could be read over; then the mask is finer than
@@ -62,6 +69,7 @@ SurfaceMaterials::SurfaceMaterials(const scenes::Scene& scene, const scenes::Sna
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         if ((materials[i + 1].flags >> MATERIAL_MASK_BIT & 1U) != 0) add_twin(i);
     }
+    if (all_textures) add_mips();
 }
 
 void SurfaceMaterials::add_twin(std::size_t scene_material) {
@@ -73,8 +81,8 @@ void SurfaceMaterials::add_twin(std::size_t scene_material) {
     if (twin.width == 0) return;
     std::tie(mask.lowest_alpha, mask.highest_alpha) = alpha_range(twin);
     // Thresholds between the same two steps of 8 bits let the same texels pass.
-    const std::uint32_t lowest_passing = (twin.alpha_threshold + 255 * 256 - 1) / (255 * 256);
-    const auto [counts, is_new] = passing_offsets_.try_emplace({twin.texel_offset, lowest_passing});
+    const auto [counts, is_new] =
+        passing_offsets_.try_emplace({twin.texel_offset, lowest_passing_alpha(twin.alpha_threshold)});
     if (is_new) counts->second = add_passing_counts(twin);
     materials[scene_material + 1].passing_offset = counts->second;
 }
@@ -107,9 +115,26 @@ std::uint32_t SurfaceMaterials::add_passing_counts(const interop::SurfaceMateria
     return offset;
 }
 
+void SurfaceMaterials::add_mips() {
+    for (interop::SurfaceMaterial& material : materials) {
+        const glm::ivec2 size(material.width, material.height);
+        if (size.x == 0 || size == glm::ivec2(1)) continue;
+        const bool masked = (material.flags >> MATERIAL_MASK_BIT & 1U) != 0;
+        const std::uint32_t lowest = masked ? lowest_passing_alpha(material.alpha_threshold) : 0;
+        const auto [mips, is_new] = mip_offsets_.try_emplace({material.texel_offset, lowest});
+        if (is_new) {
+            mips->second = grow_texels(mip_texels(size));
+            const std::span<const std::uint32_t> image(
+                &texels[material.texel_offset], std::size_t(material.width) * std::size_t(material.height));
+            std::ranges::copy(mips_of(image, size, lowest), texels.begin() + mips->second);
+        }
+        material.mip_offset = mips->second;
+    }
+}
+
 std::uint32_t SurfaceMaterials::grow_texels(std::size_t count) {
     const std::size_t offset = texels.size();
-    budget_.charge("images", "the texels of its pictures and the counts of its masks", count,
+    budget_.charge("images", "the texels and mip levels of its pictures and the counts of its masks", count,
                    sizeof(texels[0]));
     if (offset + count > std::numeric_limits<std::uint32_t>::max()) {
         throw Error(Fault::memory, "images", "the images of the scene hold too many texels",

@@ -24,7 +24,8 @@ enum class Shown : std::uint8_t { whole, cut, nothing };
 /// without its mask, for triangles that are wholly shown.
 class SurfaceMaterials {
 public:
-    /// @param all_textures  whether to upload every base-colour image in use, or only those of masks.
+    /// @param all_textures  whether to upload every base-colour image in use, with its mip levels, or only
+    ///                      those of masks, without.
     /// @throws Error  Fault::memory if the images hold more texels than 32 bits can number, or than
     ///                Scene::placing allows.
     SurfaceMaterials(const scenes::Scene& scene, const scenes::Snapshot& snapshot, bool all_textures);
@@ -55,6 +56,8 @@ private:
     std::pair<std::uint32_t, std::uint32_t> alpha_range(const interop::SurfaceMaterial& material);
     /// Counts the texels that pass, from the top left corner of the image (SurfaceMaterial::passing_offset).
     [[nodiscard]] std::uint32_t add_passing_counts(const interop::SurfaceMaterial& material);
+    /// Adds the mip levels of every texture (SurfaceMaterial::mip_offset).
+    void add_mips();
     /// Makes room in `texels` for so many more words. @return the first.
     /// @throws Error  Fault::memory if 32 bits cannot number them.
     std::uint32_t grow_texels(std::size_t count);
@@ -66,6 +69,7 @@ private:
     // that passes.
     std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> alpha_ranges_;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> passing_offsets_;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> mip_offsets_;
 };
 
 }  // namespace cairn::voxelizer
