@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "gl/buffer_texture.h"
 #include "gl/limits.h"
 #include "renderer/march/block_starts.h"
 #include "renderer/march/shadow_ends.h"
@@ -59,10 +60,7 @@ Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& opt
       queries_(options.query_capacity, options.tile_queries, shape.has_windows(), shaders) {
     if (shape.has_windows())
         windows_ = gl::Buffer(window_header_bytes + MAX_WINDOWS * sizeof(interop::MarchWindow), "windows");
-    GLuint id = 0;
-    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
-    shadow_ends_texture_ = gl::TextureHandle(id);
-    glTextureBuffer(id, GL_R32F, shadow_ends_.id());
+    shadow_ends_texture_ = gl::buffer_texture(GL_R32F, shadow_ends_);
     (void)program(RayKind::primary, PassKind::patient);
     (void)program(RayKind::shadow, PassKind::patient);
 }

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "gl/buffer_offset.h"
+#include "gl/buffer_texture.h"
 #include "gl/limits.h"
 #include "shaders/interop/pool.h"
 #include "shaders/interop/produce.h"
@@ -102,10 +103,7 @@ BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t byte
     color_ = make_texture(channels.color ? GL_RGBA8 : GL_R8, layout.size, GL_NEAREST);
     if (channels.normal) normal_ = make_texture(GL_RGB10_A2, layout.size, GL_NEAREST);
     masks_ = gl::Buffer(std::size_t(slot_count_) * mask_bytes, "brick masks");
-    GLuint id = 0;
-    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
-    mask_texture_ = gl::TextureHandle(id);
-    glTextureBuffer(id, GL_RG32UI, masks_.id());
+    mask_texture_ = gl::buffer_texture(GL_RG32UI, masks_);
     size_bytes_ = bytes_of(layout, slot_count_);
 }
 

@@ -7,6 +7,7 @@
 #include <glad/gl.h>
 
 #include "base/error.h"
+#include "gl/buffer_texture.h"
 #include "gl/limits.h"
 
 namespace cairn::renderer {
@@ -24,14 +25,6 @@ int block_count(const TreeShape& shape, std::size_t bytes, std::size_t entry_byt
                     fmt::format("give it at least {} bytes", least * block_bytes));
     }
     return int(most);
-}
-
-gl::TextureHandle buffer_texture(GLenum format, const gl::Buffer& buffer) {
-    GLuint id = 0;
-    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
-    gl::TextureHandle texture(id);
-    glTextureBuffer(id, format, buffer.id());
-    return texture;
 }
 
 }  // namespace
@@ -53,12 +46,12 @@ Tree::Tree(const TreeShape& shape, int brick_slots, std::size_t node_pool_bytes,
     slot_birth_.resize(std::size_t(brick_slots));
     node_buffer_ = gl::Buffer(entry_total * sizeof(interop::NodeEntry), "node pool");
     node_buffer_.fill(0);
-    node_texture_ = buffer_texture(GL_RGBA32UI, node_buffer_);
+    node_texture_ = gl::buffer_texture(GL_RGBA32UI, node_buffer_);
     if (has_means) {
         means_.resize(entry_total, 0);
         mean_buffer_ = gl::Buffer(entry_total * sizeof(std::uint32_t), "mean values of nodes");
         mean_buffer_.fill(0);
-        mean_texture_ = buffer_texture(GL_R32UI, mean_buffer_);
+        mean_texture_ = gl::buffer_texture(GL_R32UI, mean_buffer_);
     }
 
     [[maybe_unused]] const int root_block = blocks_.take_free();  // the first one free is 0

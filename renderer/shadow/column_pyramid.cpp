@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "gl/buffer_texture.h"
 #include "gl/limits.h"
 #include "shaders/interop/columns.h"
 #include "shaders/interop/threads.h"
@@ -60,10 +61,7 @@ ColumnPyramid::ColumnPyramid(int resolution, const gl::ShaderSource& shaders)
       halve_(gl::build_compute(shaders, "shadow/halve_columns.comp.glsl",
                                {{"COLUMN_LEVELS", std::to_string(levels_)}})),
       texels_(checked_bytes(levels_), "pyramid of columns") {
-    GLuint id = 0;
-    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
-    texture_ = gl::TextureHandle(id);
-    glTextureBuffer(id, GL_RGBA32UI, texels_.id());
+    texture_ = gl::buffer_texture(GL_RGBA32UI, texels_);
 }
 
 glm::ivec3 ColumnPyramid::grid_size() const {

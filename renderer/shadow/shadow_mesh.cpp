@@ -53,7 +53,7 @@ gl::TextureHandle make_texture(const glm::ivec2& size, std::span<const std::uint
     for (GLint level = 0; first < levels.size(); ++level) {
         glTextureSubImage2D(id, level, 0, 0, side.x, side.y, GL_RGBA, GL_UNSIGNED_BYTE, &levels[first]);
         first += std::size_t(side.x) * std::size_t(side.y);
-        side = voxelizer::coarser_size(side);
+        side = voxelizer::coarser_mip_size(side);
     }
     glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);

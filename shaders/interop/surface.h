@@ -10,7 +10,8 @@
 #define SSBO_SURFACE_TRIANGLES 1   // SurfaceTriangle
 #define SSBO_SURFACE_ATTRIBUTES 2  // SurfaceAttributes per vertex
 #define SSBO_SURFACE_MATERIALS 3   // SurfaceMaterial
-#define SSBO_SURFACE_TEXELS 4      // RGBA8 texels of all images, one uint each; mip levels; counts of masks
+// A buffer texture of one uint per texel: RGBA8 texels of all images, mip levels, and counts of masks.
+#define TEXTURE_SURFACE_TEXELS 6
 #define ATTRIBUTE_POSITION 0       // position of a vertex, when the surface is rasterized
 
 // Texture coordinates are rounded to 1 / TEXCOORD_UNITS when a surface is built, and to 1 / TEXEL_UNITS of a
@@ -44,7 +45,7 @@ struct SurfaceAttributes {
 
 struct SurfaceMaterial {
     vec4 base_color;      // linear
-    uint texel_offset;    // first texel in SSBO_SURFACE_TEXELS
+    uint texel_offset;    // first texel in TEXTURE_SURFACE_TEXELS
     uint width;           // 0 = no texture
     uint height;
     uint flags;           // MATERIAL_*
@@ -52,10 +53,10 @@ struct SurfaceMaterial {
     // A texel passes the mask if texel alpha * vertex alpha * 256 >= alpha_threshold * 257, with texel alphas
     // of 0 to 255 and vertex alphas of 0 to 65535 (257 * 255).
     uint alpha_threshold;
-    // If masked and textured: place in SSBO_SURFACE_TEXELS of (width + 1) * (height + 1) counts. Count (x, y)
+    // If masked and textured: place in TEXTURE_SURFACE_TEXELS of (width + 1) * (height + 1) counts. Count (x, y)
     // is the number of texels left of x and above y that pass, for vertex alpha 65535.
     uint passing_offset;
-    // Place in SSBO_SURFACE_TEXELS of the texture's mip level 1, behind which the others lie
+    // Place in TEXTURE_SURFACE_TEXELS of the texture's mip level 1, behind which the others lie
     // (voxelizer/surface/texture_mips.h); 0: there are none. Those of a masked material leave out the texels
     // that do not pass for vertex alpha 65535, and their alpha is the share of those that pass.
     uint mip_offset;

@@ -25,12 +25,12 @@
 #else
 #define SUM_WORDS 9
 #endif
-#define WEIGHT_UNIT 16.0
-#define NORMAL_UNIT 511.0
-#define COLOR_UNIT 2047.0
+#define WEIGHT_UNIT 256.0
+#define NORMAL_UNIT 255.0
+#define COLOR_UNIT 1023.0
 // A greater weight would overflow the sums: once it is passed, further triangles, in the order of the
 // threads, are left out.
-#define WEIGHT_LIMIT 1048576u
+#define WEIGHT_LIMIT 2097152u
 
 layout(std430, binding = SSBO_BRICK_TILES) readonly buffer TileBlock { BrickTile tiles[]; };
 layout(std430, binding = SSBO_BRICK_SCRATCH) buffer ScratchBlock { uint scratch[]; };

@@ -36,6 +36,9 @@ struct Patch {
     // Changes of the weights of the second and third vertex on the triangle's plane, per length along the
     // two other axes.
     vec2 weights_u, weights_v;
+    // Of the first vertex, and along the edges.
+    vec2 texcoord, texcoord_edge1, texcoord_edge2;
+    vec4 color, color_edge1, color_edge2;
 };
 
 // The two other axes and then the one that the triangle is most across.
@@ -65,6 +68,12 @@ Patch make_patch(uvec3 vertices, SurfaceMaterial material, ivec3 a, ivec3 b, ive
     const float scale = twice != 0.0 ? 1.0 / twice : 0.0;
     s.weights_u = vec2(e2.y, -e1.y) * scale;
     s.weights_v = vec2(-e2.x, e1.x) * scale;
+    s.texcoord = attribute_texcoord(vertices.x);
+    s.texcoord_edge1 = attribute_texcoord(vertices.y) - s.texcoord;
+    s.texcoord_edge2 = attribute_texcoord(vertices.z) - s.texcoord;
+    s.color = attribute_color(vertices.x);
+    s.color_edge1 = attribute_color(vertices.y) - s.color;
+    s.color_edge2 = attribute_color(vertices.z) - s.color;
     return s;
 }
 
@@ -89,18 +98,20 @@ vec2 weights_under(Patch s, vec3 d) {
 // The low corner of a voxel, or of a finer one, whose sides are `side` lattice units.
 vec3 from_corner(Patch s, ivec3 v, int side, float finer_side) { return vec3(v * side - s.corner) / finer_side; }
 
-#if HAS_MASK
 bool is_masked(Patch s) { return (s.material.flags >> MATERIAL_MASK_BIT & 1u) != 0u; }
+#if HAS_MASK
 // Whether the alpha mask leaves surface at a point.
 bool is_kept(Patch s, vec2 w) { return alpha_at(point_of(s, w), s.material) * ALPHA_SLACK >= s.material.alpha_cutoff; }
 #endif
 
-// The marks of the triangle in the 4^3 finer voxels of voxel `v`, whose low corner is `low`. A finer row in doubt is marked as far as
+// The marks of the triangle in the 4^3 finer voxels of voxel `v`, whose low corner is `low`;
+// `all_marks`: how many there are without its alpha mask. A finer row in doubt is marked as far as
 // the triangle may reach: coverage is an estimate, and whether the voxel is occupied has been decided
 // exactly. Of an alpha-masked triangle those finer voxels are marked under whose centres the mask leaves
 // surface.
-uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v, vec3 low) {
+uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v, vec3 low, out float all_marks) {
     uvec2 mask = uvec2(0u);
+    all_marks = 0.0;
     for (int i = 0; i < 16; ++i) {
         const ivec2 row = 4 * v.yz + ivec2(i & 3, i >> 2);
         bool in_doubt;
@@ -109,6 +120,7 @@ uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v, vec3 low) {
         const bool meets = span.x <= span.y && all(greaterThanEqual(row, fine.low.yz)) &&
                            all(lessThanEqual(row, fine.high.yz));
         uint bits = meets ? (0xFu << uint(span.x & 3)) & (0xFu >> uint(3 - span.y & 3)) : 0u;
+        all_marks += float(bitCount(bits));
 #if HAS_MASK
         if (is_masked(s)) {
             for (int x = 0; x < 4; ++x) {
@@ -137,51 +149,69 @@ vec3 middle_of(uvec2 mask, float count) {
     return sum / count;
 }
 
-// The triangle's part in a voxel, as its attributes see it.
-struct Part {
-    float area;   // in faces of a finer voxel
-    vec2 middle;  // weights of its middle
-    vec3 color;
-};
+// Is the triangle smaller than a voxel?
+bool is_small(Patch s) { return max(s.size.x, max(s.size.y, s.size.z)) < 4.0; }
 
-// Sums over the samples of a part: 4^2 points, one on the middle line of each row of finer voxels along the
-// axis that the triangle is most across. Each stands for the parallelogram of the triangle's plane over its
-// row, so that together they tile the part; its area on that axis is 1.
-Part sampled_part(Patch s, vec3 low) {
+#define LINE_SLACK 1e-3  // rounding errors of a place, in finer voxels
+
+// The area of the triangle's part in a voxel whose low corner is `low`, in faces of a finer voxel. `count`
+// marks are left of `all_marks`, those that a mask cuts away included.
+float area_in_voxel(Patch s, vec3 low, float count, float all_marks) {
+    const vec3 across = abs(s.normal);
+    // A plane meets so many finer voxels per area.
+    if (!is_small(s)) return count / max(across.x + across.y + across.z, 1.0);
+    // Marks do not measure a triangle that is small; the share of its bounding box that lies in the voxel does.
+    const vec3 inside = max(min(s.low + s.size, low + 4.0) - max(s.low, low), 0.0);
+    const vec3 share = mix(vec3(1.0), inside / max(s.size, vec3(1e-20)), greaterThan(s.size, vec3(0.0)));
+    return s.area * share.x * share.y * share.z * (count / all_marks);
+}
+
+#if HAS_COLOR
+vec4 vertex_color(Patch s, vec2 w) { return s.color + w.x * s.color_edge1 + w.y * s.color_edge2; }
+
+// Mean of the texture over a parallelogram around a point, whose sides are changes of the weights, in the
+// point's vertex colour.
+vec3 texture_around(Patch s, vec2 w, vec2 side_a, vec2 side_b) {
+    const vec4 tint = vertex_color(s, w);
+    return tint.rgb * texture_color(s.material, s.texcoord + w.x * s.texcoord_edge1 + w.y * s.texcoord_edge2,
+                         side_a.x * s.texcoord_edge1 + side_a.y * s.texcoord_edge2,
+                         side_b.x * s.texcoord_edge1 + side_b.y * s.texcoord_edge2, tint.a);
+}
+
+#define SMALL_SIDE 0.35355339  // of a parallelogram as large as a quarter of a triangle
+
+// Mean of the texture over the part, sampled at 2^2 points.
+//
+// Those of a large triangle are where it meets middle lines of the voxel's quarters along the axis that it
+// is most across. Each sample stands for the parallelogram of the triangle's plane over its quarter, so that
+// together they tile the part. Those of a triangle that is smaller than the voxel are the middles of the
+// triangle's four quarters. If none lies in the voxel, the part is sampled at `middle`.
+vec3 texture_in_voxel(Patch s, vec3 low, vec2 middle, float area) {
     const vec3 first = turned(low, s.axis);
     const vec2 start = first.x * s.weights_u + first.y * s.weights_v;
-    const vec2 edges_across = vec2(turned(s.edge1, s.axis).z, turned(s.edge2, s.axis).z);
-    Part part = Part(0.0, vec2(0.0), vec3(0.0));
-    for (int i = 0; i < 16; ++i) {
-        const vec2 w = start + (float(i & 3) + 0.5) * s.weights_u + (float(i >> 2) + 0.5) * s.weights_v;
-        const float height = dot(w, edges_across) - first.z;
-        if (w.x < 0.0 || w.y < 0.0 || w.x + w.y > 1.0 || height < 0.0 || height >= 4.0) continue;
+    const bool small = is_small(s);
+    const vec2 side_a = small ? vec2(SMALL_SIDE, 0.0) : 2.0 * s.weights_u;
+    const vec2 side_b = small ? vec2(0.0, SMALL_SIDE) : 2.0 * s.weights_v;
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; ++i) {
+        const vec2 odd = vec2(i & 1, i >> 1);
+        const vec2 quarter = i == 0 ? vec2(1.0 / 3.0) : i == 1 ? vec2(2.0, 0.5) / 3.0 : i == 2 ? vec2(0.5, 2.0) / 3.0
+                                                                                             : vec2(0.5) / 3.0;
+        const vec2 w = small ? quarter : start + (1.0 + 2.0 * odd.x) * s.weights_u + (1.0 + 2.0 * odd.y) * s.weights_v;
+        if (w.x < 0.0 || w.y < 0.0 || w.x + w.y > 1.0) continue;
+        const vec3 place = w.x * s.edge1 + w.y * s.edge2 - low;
+        if (any(lessThan(place, vec3(-LINE_SLACK))) || any(greaterThan(place, vec3(4.0 + LINE_SLACK)))) continue;
 #if HAS_MASK
         if (is_masked(s) && !is_kept(s, w)) continue;
 #endif
-        part.area += 1.0;
-        part.middle += w;
-#if HAS_COLOR
-        if (s.material.width != 0u)
-            part.color += color_over(point_of(s, w), Footprint(s.weights_u, s.weights_v), s.material);
-#endif
+        sum += vec4(texture_around(s, w, side_a, side_b), 1.0);
     }
-    return part;
+    if (sum.a > 0.0) return sum.rgb / sum.a;
+    // About half of the part's extent.
+    const float shrunk = small ? 1.0 : 0.5 * min(2.0, sqrt(area));
+    return texture_around(s, middle, shrunk * side_a, shrunk * side_b);
 }
-
-// The part of a triangle that is so small, or so thin, that no sample lies on it.
-Part small_part(Patch s, vec3 low, vec2 middle) {
-    // The share of its bounding box that lies in the voxel.
-    const vec3 inside = max(min(s.low + s.size, low + 4.0) - max(s.low, low), 0.0);
-    const vec3 share = mix(vec3(1.0), inside / max(s.size, vec3(1e-20)), greaterThan(s.size, vec3(0.0)));
-    Part part = Part(s.area * share.x * share.y * share.z, middle, vec3(0.0));
-#if HAS_COLOR
-    // About half of the triangle's own extent, if that is less than a finer voxel.
-    const float shrunk = min(1.0, sqrt(max(s.area, 0.0)));
-    part.color = color_over(point_of(s, middle), Footprint(shrunk * s.weights_u, shrunk * s.weights_v), s.material);
 #endif
-    return part;
-}
 
 // A place in the voxel near which the triangle is shown.
 vec3 shown_place(Patch s, uvec2 mask, float count) {
@@ -194,37 +224,24 @@ vec3 shown_place(Patch s, uvec2 mask, float count) {
     return middle_of(mask, count);
 }
 
-Part part_in_voxel(Patch s, vec3 low, uvec2 mask, float count) {
-    Part part = sampled_part(s, low);
-    if (part.area == 0.0) return small_part(s, low, weights_under(s, low + shown_place(s, mask, count)));
-    part.middle /= part.area;
-#if HAS_COLOR
-    // What is linear over the part has its mean in the middle.
-    part.color = s.material.width != 0u
-                     ? part.color / part.area
-                     : s.material.base_color.rgb * vertex_color_at(point_of(s, part.middle)).rgb;
-#endif
-    const vec3 across = abs(s.normal);
-    part.area /= max(max(across.x, across.y), across.z);
-    return part;
-}
-
 // Adds the triangle's part in one voxel; `voxel` is its number in the scratch.
 void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
     const float side = float(side_of(fine));
     const vec3 low = from_corner(s, v, 4 * side_of(fine), side);
-    const uvec2 mask = fine_mask(fine, s, v, low);
-    const int count = bitCount(mask.x) + bitCount(mask.y);
-    if (count == 0) return;
+    float all_marks;
+    const uvec2 mask = fine_mask(fine, s, v, low, all_marks);
+    if ((mask.x | mask.y) == 0u) return;
+    const float count = float(bitCount(mask.x) + bitCount(mask.y));
     if (mask.x != 0u) atomicOr(scratch[2u * voxel], mask.x);
     if (mask.y != 0u) atomicOr(scratch[2u * voxel + 1u], mask.y);
-    const Part part = part_in_voxel(s, low, mask, float(count));
-    const float weight = max(round(part.area * WEIGHT_UNIT), 1.0);
+    const float area = area_in_voxel(s, low, count, all_marks);
+    const float weight = max(round(area * WEIGHT_UNIT), 1.0);
     const uint sums = sums_offset + voxel * uint(SUM_WORDS);
     if (atomicAdd(scratch[sums + SUM_WEIGHT], uint(weight)) > WEIGHT_LIMIT) return;
 
+    const vec2 middle = weights_under(s, low + shown_place(s, mask, count));
     // Two's complement: negative sums wrap and come out right.
-    const vec3 normal = normal_at(point_of(s, part.middle), s.normal);
+    const vec3 normal = normal_at(point_of(s, middle), s.normal);
     const vec3 weighted = normal * (weight * NORMAL_UNIT);
     const ivec3 n = ivec3(round(weighted));
     atomicAdd(scratch[sums + SUM_NORMAL], uint(n.x));
@@ -238,7 +255,9 @@ void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
     atomicAdd(scratch[sums + SUM_MOMENTS + 3], uint(by_y.x));
     atomicAdd(scratch[sums + SUM_MOMENTS + 4], uint(by_y.y));
 #if HAS_COLOR
-    const uvec3 c = uvec3(round(clamp(part.color, 0.0, 1.0) * weight * COLOR_UNIT));
+    const vec3 color = s.material.base_color.rgb * (s.material.width == 0u ? vertex_color(s, middle).rgb
+                                                                         : texture_in_voxel(s, low, middle, area));
+    const uvec3 c = uvec3(round(clamp(color, 0.0, 1.0) * weight * COLOR_UNIT));
     atomicAdd(scratch[sums + SUM_COLOR], c.x);
     atomicAdd(scratch[sums + SUM_COLOR + 1], c.y);
     atomicAdd(scratch[sums + SUM_COLOR + 2], c.z);

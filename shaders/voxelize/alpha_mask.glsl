@@ -160,7 +160,7 @@ void mask_pieces(ivec2 range, int period, int size, uint mode, out ivec2 pieces[
 }
 
 uint mask_count_before(SurfaceMaterial material, int x, int y) {
-    return texels[material.passing_offset + uint(y) * (material.width + 1u) + uint(x)];
+    return surface_texel(material.passing_offset + uint(y) * (material.width + 1u) + uint(x));
 }
 
 // Whether all texels of a rectangle pass (MASK_SURFACE), none (MASK_EMPTY), or some (MASK_UNDECIDED).

@@ -5,12 +5,13 @@
 // values at the three vertices are whole numbers. So large triangles lose no accuracy, and triangles without
 // area still have a piece. The piece is cut in a fan of triangles. If a texture may vary on the piece, each
 // triangle of the fan is cut in `rows`^2 equal parts, about as small as a texel if ATTRIBUTE_SAMPLE_ROWS
-// suffices. Each part is sampled at its centroid, by a mean over about its area.
+// suffices. Each part is sampled at its centroid, by a mean around it.
 #include "interop/surface.h"
 #include "interop/voxelize.h"
 #include "voxelize/attribute_pairs.glsl"
 #include "voxelize/attribute_sums.glsl"
 #include "voxelize/surface.glsl"
+#define MEAN_FINENESS 2
 #include "voxelize/surface_color.glsl"
 #include "common/thread.glsl"
 
@@ -180,8 +181,8 @@ void main() {
         const dvec2 q = corners[piece.first + min(fan + 2, piece.count - 1)];
         const double share = abs((p.x - first.x) * (q.y - first.y) - (p.y - first.y) * (q.x - first.x));
         const float faces = max(float(share * faces_of_triangle), 1.0e-20);
-        // A parallelogram as large as a part.
-        const float part_side = 0.70710678 / float(rows);
+        // A parallelogram that lies in a part about its centroid, for the most.
+        const float part_side = 0.5 / float(rows);
         const Footprint footprint = Footprint(part_side * vec2(p - first), part_side * vec2(q - first));
         for (int part = 0; part < parts; ++part) {
             const vec2 middle = centroid_of_part(vec2(first), vec2(p), vec2(q), part, rows);

@@ -5,7 +5,9 @@
 layout(std430, binding = SSBO_SURFACE_ATTRIBUTES) restrict readonly buffer AttributeBlock {
     SurfaceAttributes attributes[];
 };
-layout(std430, binding = SSBO_SURFACE_TEXELS) restrict readonly buffer TexelBlock { uint texels[]; };
+layout(binding = TEXTURE_SURFACE_TEXELS) uniform usamplerBuffer surface_texels;
+
+uint surface_texel(uint place) { return texelFetch(surface_texels, int(place)).x; }
 
 vec4 attribute_color(uint vertex) {
     return vec4(unpackUnorm2x16(attributes[vertex].red_green), unpackUnorm2x16(attributes[vertex].blue_alpha));

@@ -3,8 +3,14 @@
 #include "voxelize/octahedral.glsl"
 #include "voxelize/surface_attributes.glsl"
 
+// Within 7e-5 of the value of the curve, and so much nearer than a step of 8 bits. A power takes longer, and
+// each driver rounds it in its own way. With s the root of (c + 0.055) / 1.055, the curve is s^4.8.
 vec3 linear_from_srgb(vec3 c) {
-    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+    const vec3 s = sqrt((c + 0.055) / 1.055);
+    const vec3 s2 = s * s;
+    const vec3 rest = ((((-0.892102596 * s + 3.51451407) * s - 5.69235555) * s + 4.94093543) * s - 2.60847749) * s +
+                      1.73741956;  // s^-0.2
+    return mix(c / 12.92, s2 * s2 * s * rest, greaterThan(c, vec3(0.04045)));
 }
 
 // A point on a triangle, by the weights of its vertices.
@@ -43,7 +49,7 @@ bool passes(float texel_alpha, float vertex_alpha, SurfaceMaterial material) {
 vec4 nearest_texel(SurfaceMaterial material, vec2 uv) {
     const uint x = wrapped(uv.x, material.width, wrap_s_of(material));
     const uint y = wrapped(uv.y, material.height, wrap_t_of(material));
-    return unpackUnorm4x8(texels[material.texel_offset + y * material.width + x]);
+    return unpackUnorm4x8(surface_texel(material.texel_offset + y * material.width + x));
 }
 
 // The two texels along one axis that a box of at most one texel's width touches, and the share of the second
@@ -73,7 +79,7 @@ TexelPair texel_pair(float coordinate, float width, uint size, uint mode) {
 
 // A mip level of a material's texture.
 struct MipLevel {
-    uint offset;  // first texel in texels[]
+    uint offset;  // first texel in TEXTURE_SURFACE_TEXELS
     uvec2 size;
     bool finest;
 };
@@ -95,7 +101,7 @@ MipLevel level_of_width(SurfaceMaterial material, float width) {
 // Linear colour of a texel times the share of it that counts, and that share. A mask leaves out what does not
 // pass.
 vec4 kept_texel(SurfaceMaterial material, MipLevel level, uvec2 place, float vertex_alpha) {
-    const vec4 texel = unpackUnorm4x8(texels[level.offset + place.y * level.size.x + place.x]);
+    const vec4 texel = unpackUnorm4x8(surface_texel(level.offset + place.y * level.size.x + place.x));
     float kept = 1.0;
     if ((material.flags >> MATERIAL_MASK_BIT & 1u) != 0u)
         kept = !level.finest ? texel.a : passes(texel.a, vertex_alpha, material) ? 1.0 : 0.0;
@@ -117,6 +123,12 @@ vec4 box_mean(SurfaceMaterial material, MipLevel level, vec2 uv, vec2 width, flo
     return sum;
 }
 
+// How many times finer than the shorter side of a footprint the texels of its mip level are: more texels, and
+// a smaller error where a texture changes slowly.
+#ifndef MEAN_FINENESS
+#define MEAN_FINENESS 1
+#endif
+
 // Mean of a texture over a parallelogram of these two sides, given as texture coordinates, around a point:
 // linear colour times the share that a mask keeps, and that share. The shorter side chooses the mip level,
 // and the longer one is cut in boxes about as long; if it is longer than MEAN_MOST_TAPS boxes, the level
@@ -126,21 +138,24 @@ vec4 mean_texel(SurfaceMaterial material, vec2 uv, vec2 side_a, vec2 side_b, flo
     const float a = length(side_a * size);
     const float b = length(side_b * size);
     const vec2 long_side = a < b ? side_b : side_a;
+    const vec2 short_side = a < b ? side_a : side_b;
     const float longer = min(max(a, b), 16777216.0);
-    const float width = max(min(a, b), longer / float(MEAN_MOST_TAPS));
+    const float shorter = min(min(a, b), 16777216.0);
+    const float width = max(shorter / float(MEAN_FINENESS), longer / float(MEAN_MOST_TAPS));
     // Coarser levels know what passes for the highest vertex alpha alone.
     const bool masked = (material.flags >> MATERIAL_MASK_BIT & 1u) != 0u;
     const MipLevel level = level_of_width(material, masked && vertex_alpha < 1.0 ? 0.0 : width);
-    const vec2 level_texel = 1.0 / vec2(level.size);
     const float most = max(width, 1.0);
-    const int taps = int(clamp(ceil(longer / most), 1.0, float(MEAN_MOST_TAPS)));
-    const vec2 box = min(max(abs(side_a), abs(side_b)), max(level_texel, abs(long_side) / float(taps)));
+    const int long_taps = int(clamp(ceil(longer / most), 1.0, float(MEAN_MOST_TAPS)));
+    const int short_taps = int(clamp(ceil(shorter / most), 1.0, float(MEAN_FINENESS)));
+    const vec2 box = max(abs(long_side) / float(long_taps), abs(short_side) / float(short_taps));
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < taps; ++i) {
-        const vec2 place = uv + ((float(i) + 0.5) / float(taps) - 0.5) * long_side;
-        sum += box_mean(material, level, place, box, vertex_alpha);
+    for (int i = 0; i < long_taps * short_taps; ++i) {
+        const vec2 along = (float(i % long_taps) + 0.5) / float(long_taps) * long_side - 0.5 * long_side;
+        const vec2 across = (float(i / long_taps) + 0.5) / float(short_taps) * short_side - 0.5 * short_side;
+        sum += box_mean(material, level, uv + along + across, box, vertex_alpha);
     }
-    return sum / float(taps);
+    return sum / float(long_taps * short_taps);
 }
 
 vec2 texcoord_at(SurfacePoint p) {

@@ -64,7 +64,7 @@ void AttributeVoxelizer::ChunkBinding::bind() const {
     chunk.triangles.bind_storage(SSBO_SURFACE_TRIANGLES);
     chunk.attributes.bind_storage(SSBO_SURFACE_ATTRIBUTES);
     surface.materials.bind_storage(SSBO_SURFACE_MATERIALS);
-    surface.texels.bind_storage(SSBO_SURFACE_TEXELS);
+    surface.bind_texels();
 }
 
 VoxelAttributes AttributeVoxelizer::gather(const GpuSurface& surface, const Region& region,

@@ -1,3 +1,6 @@
+#include <glad/gl.h>
+
+#include "gl/buffer_texture.h"
 #include "gl/limits.h"
 #include "shaders/interop/surface.h"
 #include "voxelizer/surface/surface.h"
@@ -21,7 +24,9 @@ GpuSurface upload(const Surface& surface) {
     out.chunk_triangles = surface.chunk_triangles;
     out.far_triangles = surface.far_triangles;
     out.materials = upload_array(surface.materials, "surface materials", limit);
-    out.texels = upload_array(surface.texels, "surface texels", limit);
+    out.texels = upload_array(surface.texels, "surface texels",
+                              gl::query_limits().texture_buffer_texels * sizeof(surface.texels[0]));
+    out.texel_texture = gl::buffer_texture(GL_R32UI, out.texels);
     out.has_color = surface.has_color;
     out.has_mask = surface.has_mask;
     return out;
@@ -32,7 +37,11 @@ void GpuSurface::bind(const GpuSurfaceChunk& chunk) const {
     chunk.triangles.bind_storage(SSBO_SURFACE_TRIANGLES);
     chunk.attributes.bind_storage(SSBO_SURFACE_ATTRIBUTES);
     materials.bind_storage(SSBO_SURFACE_MATERIALS);
-    texels.bind_storage(SSBO_SURFACE_TEXELS);
+    bind_texels();
+}
+
+void GpuSurface::bind_texels() const {
+    glBindTextureUnit(TEXTURE_SURFACE_TEXELS, texel_texture.id());
 }
 
 std::vector<std::uint32_t> GpuSurface::subset_in_chunk(std::span<const std::uint32_t> subset,

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include "gl/buffer.h"
+#include "gl/handle.h"
 #include "scenes/snapshot.h"
 #include "voxelizer/grid.h"
 
@@ -127,13 +128,15 @@ struct GpuSurface {
     std::vector<FarTriangle> far_triangles;
     gl::Buffer materials;
     gl::Buffer texels;
+    gl::TextureHandle texel_texture;  ///< shaders read the texels through it
     bool has_color = false;
     bool has_mask = false;
 
-    /// Binds SSBO_SURFACE_* for one chunk.
+    /// Binds SSBO_SURFACE_* and TEXTURE_SURFACE_TEXELS for one chunk.
     void bind(std::size_t chunk) const { bind(chunks[chunk]); }
     /// Binds SSBO_SURFACE_* for a chunk of this surface, or for other triangles with the same materials.
     void bind(const GpuSurfaceChunk& chunk) const;
+    void bind_texels() const;
     /// The triangles of a subset that lie in one chunk.
     /// @param subset  global numbers of triangles
     /// @return        their numbers in the chunk

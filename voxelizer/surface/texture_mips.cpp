@@ -89,7 +89,7 @@ std::vector<Kept> halved(const glm::ivec2& finer, const glm::ivec2& coarser, con
 std::size_t mip_texels(const glm::ivec2& size) {
     std::size_t count = 0;
     for (glm::ivec2 level = size; level != glm::ivec2(1);) {
-        level = coarser_size(level);
+        level = coarser_mip_size(level);
         count += std::size_t(level.x) * std::size_t(level.y);
     }
     return count;
@@ -101,7 +101,7 @@ std::vector<std::uint32_t> mips_of(std::span<const std::uint32_t> texels, const 
     out.reserve(mip_texels(size));
     std::vector<Kept> finer;
     for (glm::ivec2 level = size; level != glm::ivec2(1);) {
-        const glm::ivec2 coarser = coarser_size(level);
+        const glm::ivec2 coarser = coarser_mip_size(level);
         const auto stride = std::size_t(level.x);
         finer = finer.empty()
                     ? halved(level, coarser,
@@ -131,7 +131,7 @@ std::vector<std::uint32_t> filled_levels(std::span<const std::uint32_t> texels, 
     while (levels.back().size != glm::ivec2(1)) {
         const Level& finer = levels.back();
         levels.push_back({finer.first + std::size_t(finer.size.x) * std::size_t(finer.size.y),
-                          coarser_size(finer.size)});
+                          coarser_mip_size(finer.size)});
     }
     constexpr std::uint32_t color_bits = 0x00FFFFFFU;
     for (std::size_t i = levels.size() - 1; i-- > 0;) {

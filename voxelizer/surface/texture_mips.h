@@ -11,7 +11,7 @@
 namespace cairn::voxelizer {
 
 /// Size of the next coarser level: half, rounded down, and at least 1.
-[[nodiscard]] inline glm::ivec2 coarser_size(const glm::ivec2& size) {
+[[nodiscard]] inline glm::ivec2 coarser_mip_size(const glm::ivec2& size) {
     return {size.x > 1 ? size.x / 2 : 1, size.y > 1 ? size.y / 2 : 1};
 }
 

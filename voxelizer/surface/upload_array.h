@@ -12,7 +12,7 @@
 namespace cairn::voxelizer {
 
 /// Uploads values to a buffer that a shader can see whole.
-/// @param limit_bytes  Limits::shader_storage_bytes
+/// @param limit_bytes  the most that a shader sees (gl::Limits)
 /// @throws Error  Fault::memory if the values pass the limit.
 template <typename T>
 gl::Buffer upload_array(const std::vector<T>& values, const std::string& name, std::size_t limit_bytes) {

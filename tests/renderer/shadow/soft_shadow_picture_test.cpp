@@ -13,6 +13,7 @@
 #include "scenes/load.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/soft_shadow_scene.h"
+#include "tests/support/textured_scene.h"
 
 namespace cairn::test {
 namespace {
@@ -130,6 +131,43 @@ TEST_F(SoftShadowPictures, ShadowIsDarkerAndTheRestIsAsWithoutIt) {
     }
     EXPECT_GT(dark, 200);
     EXPECT_EQ(picture.image.rgba[3], 0) << "the background has no coverage";
+}
+
+/// A floor with a texture under a small occluder, seen at a low angle.
+ShadowPicture textured_floor(int side, std::vector<std::uint8_t> rgba, scenes::AlphaMode mode, float per_length) {
+    ShadowScene scene(square({0.0, 0.8, 0.0}, 0.05), square({0.0, 0.0, 0.0}, 1.5));
+    paint_from_above(scene.scene, scene.scene.meshes[0].primitives[0], side, std::move(rgba), mode, per_length);
+    View view = view_of(light_above(3.0, 0.3, 0.3));
+    view.light.ambient = 1.0F;  // every point of the floor is lit alike
+    view.camera.eye = {1.0, 0.8, 2.5};
+    return renderer_of(scene).render(view);
+}
+
+TEST_F(SoftShadowPictures, TexturesFinerThanPixelsAreMeans) {
+    const ShadowPicture picture =
+        textured_floor(64, checkerboard(64, opaque_white, opaque_black), scenes::AlphaMode::opaque, 16.0F);
+    int seen = 0;
+    for (std::size_t i = 0; i < picture.light.shares.size(); ++i) {
+        if (picture.light.shares[i] < 0.0F || picture.image.rgba[4 * i + 3] != 255) continue;
+        ++seen;
+        ASSERT_NEAR(picture.image.rgba[4 * i], 188, 3) << "pixel " << i;
+    }
+    EXPECT_GT(seen, 1000);
+}
+
+TEST_F(SoftShadowPictures, ColoursThatAMaskHidesAreNowhere) {
+    for (const float per_length : {0.25F, 1.0F, 4.0F}) {
+        const ShadowPicture picture =
+            textured_floor(16, checkerboard(16, kept_green, hidden_magenta), scenes::AlphaMode::mask, per_length);
+        int seen = 0;
+        for (std::size_t i = 0; i < picture.light.shares.size(); ++i) {
+            if (picture.light.shares[i] < 0.0F) continue;
+            ++seen;
+            ASSERT_LE(picture.image.rgba[4 * i], 1) << "pixel " << i << ", " << per_length;
+            ASSERT_LE(picture.image.rgba[4 * i + 2], 1) << "pixel " << i << ", " << per_length;
+        }
+        EXPECT_GT(seen, 500) << per_length;
+    }
 }
 
 // A window around a corner of the floor: what lies outside is lit, as documented.
