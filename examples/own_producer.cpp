@@ -91,7 +91,7 @@ public:
 
     // The producer.
     std::vector<renderer::ProducedTile> produce(std::span<const renderer::BrickRequest> requests,
-                                                const renderer::BrickPool& pool) override {
+                                                renderer::BrickPool& pool) override {
         std::vector<renderer::ProducedTile> all;
         for (const auto& [tile, slot] : requests) {
             const renderer::CpuBrick brick = make_brick(tile);

@@ -107,7 +107,8 @@ void Program::set(const char* name, const glm::mat4& value) const {
     glProgramUniformMatrix4fv(id(), glGetUniformLocation(id(), name), 1, GL_FALSE, glm::value_ptr(value));
 }
 void Program::set(const char* name, std::span<const glm::ivec4> values) const {
-    glProgramUniform4iv(id(), glGetUniformLocation(id(), name), GLsizei(values.size()), &values.front().x);
+    glProgramUniform4iv(id(), glGetUniformLocation(id(), name), GLsizei(values.size()),
+                        reinterpret_cast<const GLint*>(values.data()));
 }
 
 Program build_compute(const ShaderSource& source, std::string_view name, const Defines& defines) {

@@ -87,7 +87,13 @@ std::unique_ptr<Content> surface_content(const scenes::Scene& scene, const scene
     const TreeShape shape = tree_shape_of(tree);
     if (shape.has_windows()) {
         throw Error(Fault::usage, "tree", "a surface has no voxels as fine as its finest level",
-                    fmt::format("give it at most 2^{} voxels across", MAX_RESOLUTION_BITS));
+                    fmt::format("give it at most 2^{} voxels across", MAX_RESOLUTION_BITS - MARK_BITS));
+    }
+    if (shape.cell_base() == 2 && shape.voxel_level(shape.max_level) > MAX_RESOLUTION_BITS - MARK_BITS) {
+        throw Error(Fault::usage, "tree",
+                    fmt::format("rays through a surface count {} parts of a voxel, and 2^{} in all",
+                                1 << MARK_BITS, MAX_RESOLUTION_BITS),
+                    fmt::format("give it at most {} voxels across", 1 << (MAX_RESOLUTION_BITS - MARK_BITS)));
     }
     const voxelizer::Grid grid = voxelizer::grid_around(snapshot.bounds, shape.resolution());
     const voxelizer::Surface surface = voxelizer::build_surface(scene, snapshot, grid, {.attributes = true});

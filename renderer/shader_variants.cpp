@@ -47,15 +47,15 @@ std::vector<gl::ShaderVariants> of_producers() {
          {TreeShape{4, 16, 4, 2}, TreeShape{4, 16}, TreeShape{2, 8, 7, 1}, TreeShape{8, 8, 3, 3},
           TreeShape{3, 27}, TreeShape{3, 81}, TreeShape{2, 64}}) {
         for (const bool has_color : {false, true}) {
-            for (const gl::Defines& mask : gl::each_value("HAS_MASK", {0, 1})) {
-                for (const gl::Defines& finds : gl::each_value("FINDS_EMPTY", {0, 1}))
-                    surface.push_back(joined(joined(shape.defines(has_color), mask), finds));
-            }
+            for (const gl::Defines& mask : gl::each_value("HAS_MASK", {0, 1}))
+                surface.push_back(joined(shape.defines(has_color), mask));
         }
     }
-    return {{"produce/fractal.comp.glsl", fractal}, {"produce/fractal_masks.comp.glsl", fractal},
-            {"produce/masks.comp.glsl", surface},   {"produce/resolve.comp.glsl", surface},
-            {"produce/splat.comp.glsl", surface},   {"produce/summarize.comp.glsl", surface}};
+    return {{"produce/fractal.comp.glsl", fractal},       {"produce/fractal_masks.comp.glsl", fractal},
+            {"produce/masks.comp.glsl", surface},         {"produce/border_masks.comp.glsl", surface},
+            {"produce/count_records.comp.glsl", surface}, {"produce/store_heads.comp.glsl", surface},
+            {"produce/resolve.comp.glsl", surface},       {"produce/splat.comp.glsl", surface},
+            {"produce/summarize.comp.glsl", surface}};
 }
 
 std::vector<gl::ShaderVariants> of_meshes() {
@@ -97,28 +97,32 @@ std::vector<gl::ShaderVariants> of_shadows() {
 std::vector<MarchSetting> march_settings() {
     const TreeShape in_windows = make_deep_tree_shape(2, 16, 40);
     const TreeShape wide_in_windows = make_deep_tree_shape(4, 16, 20);
+    const Channels plain;
+    const Channels color{.color = true};
+    const Channels packed{.packed = true};
+    const Channels packed_color{.color = true, .packed = true};
     return {
-        // n, m, levels and mips; colour; traversal; tile queries; content
-        {{4, 16, 4, 2}, true, Traversal::mini_stack},
-        {{4, 16, 4}, true, Traversal::mini_stack, TileQueries::blocks},
-        {{2, 8, 7, 1}, false, Traversal::stackless},
-        {{8, 8, 3, 3}, false, Traversal::restart},
+        // n, m, levels and mips; channels; traversal; tile queries; content
+        {{4, 16, 4, 2}, packed_color, Traversal::mini_stack},
+        {{4, 16, 4}, packed_color, Traversal::mini_stack, TileQueries::blocks},
+        {{2, 8, 7, 1}, packed, Traversal::stackless},
+        {{8, 8, 3, 3}, packed, Traversal::restart},
         {{8, 16, 3},
-         true,
+         color,
          Traversal::stackless,
          TileQueries::list,
          {.has_constant = true, .has_final = true}},
-        {{2, 16, 8}, false, Traversal::mini_stack, TileQueries::list, {.has_constant = true}},
-        {{3, 27, 5}, true, Traversal::stackless},
-        {{3, 81, 4}, false, Traversal::mini_stack},
-        {{4, 64, 0}, false, Traversal::mini_stack},
-        {{2, 32, 5}, true, Traversal::restart},
-        {in_windows, false, Traversal::restart},
-        {wide_in_windows, false, Traversal::restart, TileQueries::blocks},
-        {{4, 16, 4}, false, Traversal::mini_stack, TileQueries::list, volume(2, false)},
-        {{2, 8, 7}, false, Traversal::stackless, TileQueries::list, volume(1, true)},
-        {{4, 64, 0}, false, Traversal::restart, TileQueries::list, volume(16, false)},
-        {{3, 27, 4}, false, Traversal::mini_stack, TileQueries::blocks, volume(2, true)},
+        {{2, 16, 8}, plain, Traversal::mini_stack, TileQueries::list, {.has_constant = true}},
+        {{3, 27, 5}, packed_color, Traversal::stackless},
+        {{3, 81, 4}, plain, Traversal::mini_stack},
+        {{4, 64, 0}, packed, Traversal::mini_stack},
+        {{2, 32, 5}, color, Traversal::restart},
+        {in_windows, plain, Traversal::restart},
+        {wide_in_windows, plain, Traversal::restart, TileQueries::blocks},
+        {{4, 16, 4}, plain, Traversal::mini_stack, TileQueries::list, volume(2, false)},
+        {{2, 8, 7}, plain, Traversal::stackless, TileQueries::list, volume(1, true)},
+        {{4, 64, 0}, plain, Traversal::restart, TileQueries::list, volume(16, false)},
+        {{3, 27, 4}, plain, Traversal::mini_stack, TileQueries::blocks, volume(2, true)},
     };
 }
 

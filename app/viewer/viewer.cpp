@@ -261,9 +261,11 @@ std::string Viewer::statistics_line() const {
     } else if (is_growing) {
         state = fmt::format("refining {:.0f}%", 100.0 * growing_.share_done());
     }
-    return fmt::format("{:.0f} ms   {}x{} at {:.0f}%   {} of {} bricks, {} produced   {}", last_.milliseconds,
-                       view_.size.width, view_.size.height, 100.0 * width / view_.size.width,
-                       last_.bricks_resident, last_.brick_slots, bricks_produced_, state);
+    return fmt::format("{:.0f} ms   {}x{} at {:.0f}%   {} bricks in {:.0f} of {:.0f} MiB, {} produced   {}",
+                       last_.milliseconds, view_.size.width, view_.size.height,
+                       100.0 * width / view_.size.width, last_.bricks_resident,
+                       double(last_.brick_bytes_resident) / 0x1p20, double(last_.brick_pool_bytes) / 0x1p20,
+                       bricks_produced_, state);
 }
 
 }  // namespace cairn::app

@@ -88,7 +88,7 @@ private:
         for (int run = 0; run < options_.runs; ++run)
             least_ms = std::min(least_ms, cost_of([&] { (void)marched_frame(ours, view); }).processor_ms);
         const double slot_kib =
-            double(statistics.brick_pool_bytes) / double(statistics.brick_slots) / kibibyte;
+            double(statistics.brick_bytes_resident) / double(statistics.bricks_resident) / kibibyte;
         return on_this_machine(
             {name_, fmt::format("{}x{}", view.size.width, view.size.height), distance,
              std::string(method.name), view.detail.pixel_error, steps * picture_errors(image, truth).rmse,

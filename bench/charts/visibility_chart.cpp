@@ -94,8 +94,12 @@ private:
     [[nodiscard]] std::size_t bytes_for_frustum(const renderer::View& view) const {
         const renderer::TreeShape shape = case_.shape(tree());
         const std::unique_ptr<renderer::Content> content = case_.content(tree(), options_.shaders);
-        const renderer::BrickPool sample(shape, content->channels(), sample_pool_bytes);
-        const std::size_t slot_bytes = sample.size_bytes() / std::size_t(sample.slot_count());
+        const std::size_t sample_bytes =
+            std::max(sample_pool_bytes, renderer::least_packed_bytes(shape, content->has_color()));
+        const renderer::BrickPool sample(shape, content->channels(), sample_bytes);
+        // A packed pool has slots for bricks of few voxels.
+        const std::size_t slot_bytes =
+            sample.size_bytes() / std::size_t(sample.slot_count()) * (content->channels().packed ? 4 : 1);
         const std::size_t tiles = tiles_in_frustum(*content, shape, view);
         return std::min(slot_bytes * (tiles + tiles / 4 + 64), most_pool_bytes);
     }

@@ -57,8 +57,8 @@ VisibleBricks::VisibleBricks(std::unique_ptr<renderer::Content> content, const r
     : view_(marched_view(view, *content, shape)),
       cache_(std::move(content), {node_pool_bytes, brick_pool_bytes}),
       test_(view_, shape),
-      saturate_(shape, cache_.content().has_color(), {}, shaders, saturating()),
-      picture_(shape, cache_.content().has_color(), {}, shaders),
+      saturate_(shape, cache_.content().channels(), {}, shaders, saturating()),
+      picture_(shape, cache_.content().channels(), {}, shaders),
       boxes_(view_, shaders) {
     draw();  // compiles shaders before anything is timed
 }

@@ -26,7 +26,7 @@ ContentProgram program_of(const Content& content) {
 FrameLoop::FrameLoop(std::unique_ptr<Content> content, const PoolSizes& pools, const MarchOptions& options,
                      const gl::ShaderSource& shaders)
     : cache_(std::move(content), pools),
-      marcher_(cache_.shape(), cache_.content().has_color(), options, shaders, program_of(cache_.content())),
+      marcher_(cache_.shape(), cache_.content().channels(), options, shaders, program_of(cache_.content())),
       tile_queries_(options.tile_queries) {
     if (cache_.shape().mips != 0 && !cache_.content().fills_mips()) {
         throw Error(Fault::usage, "tree", "the bricks of this content have no mip levels",
@@ -291,6 +291,7 @@ void FrameLoop::note_frame(const TileCache::Counters& cache_before, const PassCo
     out.brick_slots = std::uint64_t(cache_.pool().slot_count());
     out.node_pool_bytes = cache_.tree().size_bytes();
     out.brick_pool_bytes = cache_.pool().size_bytes();
+    out.brick_bytes_resident = cache_.pool().used_bytes(cache_.tree().bricks_resident());
     out.brick_cache_bytes = cache_.brick_cache_bytes();
 }
 

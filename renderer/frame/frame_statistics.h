@@ -45,10 +45,12 @@ struct FrameStatistics {
     /// Resident bricks that rays read, or that were produced, since the frame began; with a budget, since the
     /// first frame of this view began.
     std::uint64_t bricks_used = 0;
-    std::uint64_t brick_slots = 0;      ///< the most bricks that can be resident
-    std::size_t node_pool_bytes = 0;    ///< size of the node pool, used or not
-    std::size_t brick_pool_bytes = 0;   ///< size of the brick pool, used or not
-    std::size_t brick_cache_bytes = 0;  ///< size of the bricks in main memory now
+    /// The most bricks that can be resident; packed bricks fill the pool's bytes before.
+    std::uint64_t brick_slots = 0;
+    std::size_t node_pool_bytes = 0;       ///< size of the node pool, used or not
+    std::size_t brick_pool_bytes = 0;      ///< size of the brick pool, used or not
+    std::size_t brick_bytes_resident = 0;  ///< what the bricks in the pool take of it
+    std::size_t brick_cache_bytes = 0;     ///< size of the bricks in main memory now
 };
 
 /// Result of Renderer::prefetch_finer().

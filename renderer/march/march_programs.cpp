@@ -23,8 +23,9 @@ void append(gl::Defines& to, const gl::Defines& more) {
 }  // namespace
 
 gl::Defines defines(const MarchSetting& setting) {
-    gl::Defines out = setting.shape.defines(setting.has_color);
-    append(out, {{"TRAVERSAL", std::to_string(int(setting.traversal))},
+    gl::Defines out = setting.shape.defines(setting.channels.color);
+    append(out, {{"PACKED", flag(setting.channels.packed)},
+                 {"TRAVERSAL", std::to_string(int(setting.traversal))},
                  {"TILE_BLOCKS", flag(setting.tile_queries == TileQueries::blocks)},
                  {"HAS_CONSTANT", flag(setting.content.has_constant)},
                  {"HAS_FINAL", flag(setting.content.has_final)},

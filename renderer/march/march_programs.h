@@ -16,7 +16,7 @@ namespace cairn::renderer {
 /// What all programs of a marcher have in common.
 struct MarchSetting {
     TreeShape shape;
-    bool has_color = false;
+    Channels channels = {};
     Traversal traversal = Traversal::mini_stack;
     TileQueries tile_queries = TileQueries::list;
     ContentProgram content = {};

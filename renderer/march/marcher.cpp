@@ -17,9 +17,9 @@
 namespace cairn::renderer {
 namespace {
 
-/// The most passes in a row in which rays only pause: a ray crosses fewer than 8 cells per voxel across the
-/// root cube. With windows, it crosses that many per window.
-constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET + 1;
+/// The most passes in a row in which rays only pause. A ray crosses fewer than 8 cells per voxel, or mark,
+/// across the root cube, and takes at most 64 turns in each. With windows, it crosses 16 per voxel of each.
+constexpr int most_pauses = (8 << MAX_RESOLUTION_BITS) / TURN_BUDGET * 64 + 1;
 constexpr int most_pauses_in_windows = ((16 << WINDOW_TILE_BITS) / TURN_BUDGET + 1) * MAX_WINDOWS;
 constexpr std::size_t window_header_bytes = sizeof(glm::ivec4);
 
@@ -49,12 +49,12 @@ std::uint32_t pixels_of(const std::vector<interop::BlockStart>& starts, const gl
 
 }  // namespace
 
-Marcher::Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
+Marcher::Marcher(const TreeShape& shape, Channels channels, const MarchOptions& options,
                  const gl::ShaderSource& shaders, ContentProgram content)
     : options_(options_for(shape, options)),
       content_(std::move(content)),
       programs_(
-          march_programs({shape, has_color, options_.traversal, options_.tile_queries, content_}, shaders)),
+          march_programs({shape, channels, options_.traversal, options_.tile_queries, content_}, shaders)),
       view_(sizeof(interop::MarchView), "view"),
       shadow_ends_(std::size_t(SHADOW_ENDS_SIDE) * SHADOW_ENDS_SIDE * sizeof(float), "ends of shadow rays"),
       queries_(options.query_capacity, options.tile_queries, shape.has_windows(), shaders) {

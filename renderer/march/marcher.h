@@ -72,7 +72,7 @@ struct MixTextures {
 class Marcher {
 public:
     /// @throws Error (Fault::usage) if the query capacity is out of range.
-    Marcher(const TreeShape& shape, bool has_color, const MarchOptions& options,
+    Marcher(const TreeShape& shape, Channels channels, const MarchOptions& options,
             const gl::ShaderSource& shaders, ContentProgram content = {});
 
     /// Rows of a picture that are marched at once: as many as have room for their ray states in the largest

@@ -19,7 +19,8 @@ class MeshRaster;
 /// What is drawn as triangles beside the voxels (renderer/mesh/mesh_raster.h), in the same world.
 struct Mix {
     /// Meshes that are shown where they are nearer than the voxels, and through what the voxels leave
-    /// uncovered; lit like voxels. A voxel counts as nearer if the middle of the ray's way through it is.
+    /// uncovered; lit like voxels. A voxel, or mark, counts as nearer if the middle of the ray's way through
+    /// it is.
     /// Meshes cast no shadows.
     std::shared_ptr<MeshRaster> meshes = nullptr;
     /// Voxels cast shadows on the meshes if the view has shadows.

@@ -27,23 +27,25 @@ namespace cairn::renderer {
 class BrickCache {
 public:
     /// Refers to the pool, which must outlive it.
-    /// @param limit_bytes  bytes of all kept bricks and their records; room for one brick at least.
+    /// @param limit_bytes  bytes of all kept bricks and their records; room for one brick at least, and if
+    ///                     bricks are packed, for one whose voxels are all occupied.
     /// @throws Error (Fault::usage) if not one brick fits.
-    BrickCache(const BrickPool& pool, std::size_t limit_bytes);
+    BrickCache(const TreeShape& shape, BrickPool& pool, std::size_t limit_bytes);
 
-    /// Keeps the bricks that these slots still hold. Call it before anything else is written to the slots.
+    /// Keeps the bricks that these slots still hold. Call it before anything else is written to the slots, or
+    /// where packed bricks were.
     void store(std::span<const Tree::EvictedBrick> evicted);
 
-    /// Writes the tile's brick to the slot.
-    /// @return  false if the cache does not hold the brick.
-    [[nodiscard]] bool restore(const Tile& tile, int slot);
+    enum class Restored : std::uint8_t { yes, not_cached, no_room };
+    /// Writes the tile's brick to the slot, if the cache holds it and the pool has room for it.
+    [[nodiscard]] Restored restore(const Tile& tile, int slot);
 
     struct Counters {
         std::uint64_t stored = 0;    ///< bricks read back
         std::uint64_t restored = 0;  ///< bricks written to the pool again
     };
     [[nodiscard]] const Counters& counters() const { return counters_; }
-    [[nodiscard]] std::size_t size_bytes() const { return order_.size() * (brick_bytes_ + record_bytes); }
+    [[nodiscard]] std::size_t size_bytes() const { return kept_bytes_; }
 
 private:
     struct Brick {
@@ -59,21 +61,28 @@ private:
         gl::Buffer buffer;
         Fence fence;
         Tile tile;
+        std::size_t bytes = 0;
     };
     // One node of the list, one of the map, and a vector.
     static constexpr std::size_t record_bytes = 128;
     static constexpr std::size_t ring_size = 32;
 
     void start_readback(Readback& readback, const Tree::EvictedBrick& evicted) const;
+    void read_dense(const gl::Buffer& to, int slot) const;
+    void write_dense(int slot) const;
+    [[nodiscard]] bool write_packed(int slot, std::size_t bytes);
+    /// Bytes of the brick that the slot holds or has just lost.
+    [[nodiscard]] std::size_t brick_bytes(int slot) const;
     void finish(Readback& readback);
     void keep(const Tile& tile, std::vector<std::uint8_t> bytes);
     [[nodiscard]] bool holds(const Tile& tile) const;
 
-    const BrickPool& pool_;
+    BrickPool& pool_;
     std::size_t limit_bytes_;
+    std::size_t kept_bytes_ = 0;
     std::vector<BrickPool::Layer> layers_;
     std::size_t masks_offset_ = 0;  // where masks start in a brick's bytes, behind the texels of all layers
-    std::size_t brick_bytes_ = 0;
+    std::size_t dense_bytes_ = 0;
     std::list<Brick> order_;  // the brick used last comes first
     std::unordered_map<Tile, std::list<Brick>::iterator, TileHash> bricks_;
     std::array<Readback, ring_size> ring_;

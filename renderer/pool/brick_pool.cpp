@@ -73,6 +73,12 @@ Layout lay_out(const TreeShape& shape, const glm::ivec3& slots) {
 
 BrickPool::BrickPool(const TreeShape& shape, Channels channels, std::size_t bytes)
     : shape_(shape), channels_(channels) {
+    if (channels.packed) {
+        packed_.emplace(shape, channels.color, bytes);
+        slot_count_ = packed_->slot_count();
+        size_bytes_ = packed_->size_bytes();
+        return;
+    }
     const std::size_t mask_bytes = mask_bytes_per_slot();
     const std::size_t texel_bytes = (channels.color ? 4U : 1U) + (channels.normal ? 4U : 0U);
     auto bytes_of = [&](const Layout& layout, int slots) {
@@ -129,13 +135,33 @@ std::vector<BrickPool::Layer> BrickPool::layers() const {
     return layers;
 }
 
+std::size_t BrickPool::used_bytes(int bricks) const {
+    if (packed_) return packed_->used_bytes();
+    return size_bytes_ / std::size_t(slot_count_) * std::size_t(bricks);
+}
+
+bool BrickPool::reserve(int slot, std::uint32_t words) {
+    while (!packed_->reserve(slot, words)) {
+        if (!evict_ || !evict_(slot)) return false;
+    }
+    return true;
+}
+
 void BrickPool::bind_for_reading() const {
+    if (packed_) {
+        packed_->bind_for_reading();
+        return;
+    }
     glBindTextureUnit(TEXTURE_BRICK_MASKS, mask_texture_.id());
     glBindTextureUnit(TEXTURE_BRICK_COLOR, color_.id());
     glBindTextureUnit(TEXTURE_BRICK_NORMAL, normal_.id());
 }
 
 void BrickPool::bind_for_writing() const {
+    if (packed_) {
+        packed_->bind_for_writing();
+        return;
+    }
     glBindImageTexture(IMAGE_BRICK_COLOR, color_.id(), 0, GL_TRUE, 0, GL_WRITE_ONLY,
                        channels_.color ? GL_RGBA8 : GL_R8);
     if (channels_.normal)

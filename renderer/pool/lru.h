@@ -11,7 +11,7 @@ namespace cairn::renderer {
 /// place that was not used for longest (Crassin et al. 2008, section 4.3).
 class Lru {
 public:
-    explicit Lru(int count) : stamps_(std::size_t(count)) {
+    explicit Lru(int count) : stamps_(std::size_t(count)), taken_(std::size_t(count), false) {
         free_.reserve(std::size_t(count));
         for (int i = count - 1; i >= 0; --i)
             free_.push_back(i);
@@ -29,12 +29,18 @@ public:
         if (free_.empty()) return -1;
         const int place = free_.back();
         free_.pop_back();
+        taken_[std::size_t(place)] = true;
         return place;
     }
-    void release(int place) { free_.push_back(place); }
+    void release(int place) {
+        free_.push_back(place);
+        taken_[std::size_t(place)] = false;
+    }
+    [[nodiscard]] bool is_taken(int place) const { return taken_[std::size_t(place)]; }
 
 private:
     std::vector<Round> stamps_;
+    std::vector<bool> taken_;
     std::vector<int> free_;
 };
 

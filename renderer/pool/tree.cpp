@@ -139,12 +139,20 @@ std::optional<int> Tree::add_brick(std::uint32_t entry, bool may_stay) {
 
 int Tree::take_slot(Round limit) {
     if (const int slot = bricks_.take_free(); slot >= 0) return slot;
+    return evict_old_brick(limit) ? bricks_.take_free() : -1;
+}
+
+bool Tree::evict_brick_for(int slot) {
+    return evict_old_brick(bricks_.stamp(slot));
+}
+
+bool Tree::evict_old_brick(Round limit) {
     if (!slots_sorted_) {
         old_slots_.clear();
         for (int slot = 0; slot < bricks_.count(); ++slot) {
             // A slot that was given out in this round waits for its brick, however old its stamp.
             const bool is_new = slot_birth_[std::size_t(slot)] == round_;
-            if (is_old(bricks_.stamp(slot)) && !is_new) old_slots_.push_back(slot);
+            if (bricks_.is_taken(slot) && is_old(bricks_.stamp(slot)) && !is_new) old_slots_.push_back(slot);
         }
         std::sort(old_slots_.begin(), old_slots_.end(),
                   [&](int a, int b) { return bricks_.stamp(a) > bricks_.stamp(b); });
@@ -152,13 +160,16 @@ int Tree::take_slot(Round limit) {
     }
     while (!old_slots_.empty()) {
         const int slot = old_slots_.back();
-        if (is_old(bricks_.stamp(slot)) && bricks_.stamp(slot) >= limit) return -1;
+        // It may have been released, and given out again, since the slots were sorted.
+        const bool may_go =
+            bricks_.is_taken(slot) && slot_birth_[std::size_t(slot)] != round_ && is_old(bricks_.stamp(slot));
+        if (may_go && bricks_.stamp(slot) >= limit) return false;
         old_slots_.pop_back();
-        if (!is_old(bricks_.stamp(slot))) continue;
+        if (!may_go) continue;
         evict_brick(slot);
-        return bricks_.take_free();
+        return true;
     }
-    return -1;
+    return false;
 }
 
 void Tree::evict_brick(int slot) {
@@ -178,6 +189,7 @@ void Tree::release_slot(int slot) {
         slot_owner_[std::size_t(slot)] = none;
     }
     bricks_.release(slot);
+    if (is_free_) is_free_(slot);
 }
 
 void Tree::set_constant(std::uint32_t entry, glm::u8vec4 mean) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -86,6 +87,14 @@ public:
     ///                  a brick only replaces bricks that were not used for longer: two of them never take
     ///                  turns.
     [[nodiscard]] std::optional<int> add_brick(std::uint32_t entry, bool may_stay = true);
+    /// Takes back the slot that add_brick() gave the tile: there is no room for its brick. The tile wants a
+    /// brick again.
+    void take_brick_back(std::uint32_t entry) { release_slot(*slot(entry)); }
+    /// Evicts the brick that was not used for longest, if it may go for the brick of this slot, by the rules
+    /// of add_brick(). @return false if no brick may go.
+    [[nodiscard]] bool evict_brick_for(int slot);
+    /// Called for each slot that becomes free.
+    void tell_of_free_slots(std::function<void(int slot)> is_free) { is_free_ = std::move(is_free); }
 
     /// Records that the tile was produced. The entry keeps the record even if the brick is evicted.
     void set_produced(std::uint32_t entry) { add_flags(entry, NODE_PRODUCED); }
@@ -140,6 +149,8 @@ private:
     }
     /// Takes a free slot; else evicts one that was last used before `limit`; -1 if there is neither.
     [[nodiscard]] int take_slot(Round limit);
+    /// Evicts the brick that was not used for longest if that was before `limit`. False if there is none.
+    [[nodiscard]] bool evict_old_brick(Round limit);
     /// Takes a free block; else evicts an old one; -1 if there is neither.
     [[nodiscard]] int take_block();
     [[nodiscard]] bool can_evict_block(int block) const;
@@ -172,6 +183,7 @@ private:
     std::unordered_map<Tile, OrphanBrick, TileHash> orphans_;
     std::vector<EvictedBrick> evicted_;
     bool records_evictions_ = false;
+    std::function<void(int)> is_free_;
     std::vector<int> old_slots_;  // slots that may be evicted in this round, oldest last
     bool slots_sorted_ = false;
     /// Stamp and number of the blocks that may be evicted in this round: a heap, the oldest on top.

@@ -27,6 +27,7 @@ gl::Defines TreeShape::defines(bool has_color) const {
             {"BLOCKS", std::to_string(blocks())},
             {"SUMMARY_WORDS", std::to_string(summary_words())},
             {"MASK_WORDS", std::to_string(mask_words())},
+            {"GROUPS", std::to_string(groups())},
             {"MAX_LEVEL", std::to_string(has_windows() ? levels_in_window() : max_level)},
             {"WINDOWS", has_windows() ? "1" : "0"},
             {"HAS_COLOR", has_color ? "1" : "0"}};

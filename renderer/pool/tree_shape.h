@@ -63,6 +63,23 @@ struct TreeShape {
             words += blocks(mip);
         return words;
     }
+    /// Voxels of a mip's border, one voxel wide on each side.
+    [[nodiscard]] int border_voxels(int mip) const {
+        const int inner = m >> mip;
+        return mip_side(mip) * mip_side(mip) * mip_side(mip) - inner * inner * inner;
+    }
+    /// Groups of voxels of a packed brick (renderer/pool/packed_bricks.h), whose occupancy is one 64-bit word
+    /// each: first the mask blocks of all mips, then the borders of all mips, 64 voxels in a group.
+    [[nodiscard]] int groups() const {
+        int groups = inner_groups();
+        for (int mip = 0; mip <= mips; ++mip)
+            groups += (border_voxels(mip) + 63) / 64;
+        return groups;
+    }
+    /// Groups that are mask blocks.
+    [[nodiscard]] int inner_groups() const { return mask_words() - summary_words(); }
+    /// 32-bit words at the start of a packed brick, before its records.
+    [[nodiscard]] int head_words() const { return 2 * (summary_words() + groups()) + groups() + 1; }
     /// Has the tree too many voxels for a ray to count? Then rays go through windows
     /// (renderer/march/windows.h), and resolution() has no meaning. False if n = 3.
     [[nodiscard]] bool has_windows() const;
@@ -95,8 +112,8 @@ struct TreeOptions {
     int m = 16;
     /// Voxels across the root cube that rays may ask for.
     int max_resolution = 8192;
-    /// Bricks hold mip levels, for LevelOfDetail::Kind::blended, and take a fifth more memory. For surfaces
-    /// only, and not with n = 3.
+    /// Bricks hold mip levels, for LevelOfDetail::Kind::blended, and take about a third more memory. For
+    /// surfaces only, and not with n = 3.
     bool mips = false;
     /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest
     /// voxels are at least 2^-60 of the root cube.
@@ -122,6 +139,8 @@ struct PoolSizes {
 struct Channels {
     bool color = false;
     bool normal = true;
+    /// Bricks keep the voxels that are occupied, and no others (renderer/pool/packed_bricks.h).
+    bool packed = false;
 };
 
 /// A region of the regular subdivision: level 0 is the root cube, level l has n^l tiles across it.

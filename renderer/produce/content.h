@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -48,6 +49,8 @@ struct BrickRequest {
 /// What a tile turned out to hold when it was produced (Crassin et al. 2008, section 6.1). It depends on the
 /// tile alone.
 struct ProducedTile {
+    /// Words of its packed brick if the pool had no room for it; else 0.
+    std::uint32_t words_without_room = 0;
     /// Every voxel at the tile's own level has the same value; so have those of the border, unless the value
     /// is 0. The tile needs no brick. Its children may hold more. A value other than 0 needs
     /// Content::has_constant().
@@ -71,10 +74,10 @@ public:
     virtual ~Producer() = default;
 
     /// Writes the whole slot of each request: colour or coverage, normal, masks, border included. The same
-    /// tile gives the same texels whatever it is produced with.
+    /// tile gives the same texels whatever it is produced with. Packed bricks get their room from the pool
+    /// (BrickPool::reserve).
     /// @return  one ProducedTile per request, in the order of the requests.
-    virtual std::vector<ProducedTile> produce(std::span<const BrickRequest> requests,
-                                              const BrickPool& pool) = 0;
+    virtual std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, BrickPool& pool) = 0;
 
     /// Milliseconds that the last produce() took to send bricks to the GPU; 0 if the GPU makes them itself.
     [[nodiscard]] virtual double upload_ms() const { return 0.0; }

@@ -57,8 +57,7 @@ FractalProducer::FractalProducer(const TreeShape& shape, const gl::ShaderSource&
       masks_(gl::build_compute(shaders, "produce/fractal_masks.comp.glsl", shape.defines(false))),
       tiles_(batch_ * sizeof(interop::FractalTile), "fractal tiles") {}
 
-std::vector<ProducedTile> FractalProducer::produce(std::span<const BrickRequest> requests,
-                                                   const BrickPool& pool) {
+std::vector<ProducedTile> FractalProducer::produce(std::span<const BrickRequest> requests, BrickPool& pool) {
     const auto side = std::size_t(shape_.m) + 2;
     const auto words = std::size_t(shape_.mask_words());
     for (std::size_t first = 0; first < requests.size(); first += batch_) {

@@ -53,7 +53,7 @@ class FractalProducer final : public Producer {
 public:
     /// @param batch  bricks that are filled at a time, at least 1. No brick depends on it.
     FractalProducer(const TreeShape& shape, const gl::ShaderSource& shaders, std::size_t batch = 1024);
-    std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+    std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, BrickPool& pool) override;
 
 private:
     TreeShape shape_;

@@ -22,6 +22,7 @@ public:
     [[nodiscard]] Producer& producer() override { return producer_; }
     [[nodiscard]] const voxelizer::Grid& grid() const override { return grid_; }
     [[nodiscard]] bool has_color() const override { return surface_.has_color; }
+    [[nodiscard]] Channels channels() const override { return {.color = has_color(), .packed = true}; }
     [[nodiscard]] bool fills_mips() const override { return true; }
     [[nodiscard]] glm::vec3 uniform_color() const override { return uniform_color_; }
 

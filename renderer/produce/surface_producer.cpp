@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/error.h"
 #include "renderer/pool/brick_pool.h"
 #include "renderer/produce/tile_lists.h"
 #include "shaders/interop/surface.h"
@@ -12,9 +13,13 @@ namespace cairn::renderer {
 namespace {
 
 /// Loop turns of a thread at most. A triangle that crosses a whole brick is cut in pieces, which threads
-/// share, because no thread may turn its loops too often (docs/decisions/house_and_scenes.md). A voxel takes
-/// one turn itself, 16 for its rows, and 64 more for an alpha mask.
+/// share, because no thread may turn its loops too often (docs/decisions/house_and_scenes.md).
 constexpr int turns_per_pair = 30000;
+/// A voxel takes one turn itself and 16 for its rows; 64 more for an alpha mask; and for a texture up to 5
+/// means, each over the way to its mip level and the 4 texels of up to 8 boxes.
+constexpr int turns_of_voxel = 17;
+constexpr int turns_of_mask = 64;
+constexpr int turns_of_texture = 5 * (1 + 14 + 8 * 5);
 /// Voxels of all mips of a brick, border included.
 std::size_t voxels_per_brick(const TreeShape& shape) {
     std::size_t voxels = 0;
@@ -44,15 +49,16 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     : shape_(shape),
       surface_(surface),
       lists_(lists),
-      finds_empty_(shape.cell_base() != 2 || surface.has_mask),
       pair_room_(std::max<std::size_t>(limits.pairs, 1)),
       pairs_(surface.chunks.size()) {
     const std::size_t brick_bytes = scratch_bytes_per_brick(shape, surface.has_color);
     batch_ = int(std::clamp<std::size_t>(limits.scratch_bytes / brick_bytes, 1, 0xFFFF));
     gl::Defines defines = shape.defines(surface.has_color);
-    resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
-    defines.emplace_back("FINDS_EMPTY", finds_empty_ ? "1" : "0");
     defines.emplace_back("HAS_MASK", surface.has_mask ? "1" : "0");
+    resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
+    border_masks_ = gl::build_compute(shaders, "produce/border_masks.comp.glsl", defines);
+    count_records_ = gl::build_compute(shaders, "produce/count_records.comp.glsl", defines);
+    store_heads_ = gl::build_compute(shaders, "produce/store_heads.comp.glsl", defines);
     masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
     summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
     splat_ = gl::build_compute(shaders, "produce/splat.comp.glsl", defines);
@@ -63,21 +69,19 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     for (gl::Program* program : {&splat_, &resolve_})
         program->set("sums_offset", unsigned(std::size_t(batch_) * voxels_per_brick(shape) * 2));
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
-    if (finds_empty_)
-        found_ = gl::Buffer(std::size_t(batch_) * sizeof(std::uint32_t), "bricks that hold anything");
+    heads_ = gl::Buffer(std::size_t(batch_) * std::size_t(shape.head_words()) * sizeof(std::uint32_t),
+                        "heads of bricks");
+    counts_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::PackedCount), "counts of records");
     pair_buffer_ = gl::Buffer(pair_room_ * sizeof(interop::BrickPair), "brick pairs");
 }
 
-std::vector<ProducedTile> SurfaceProducer::produce(std::span<const BrickRequest> requests,
-                                                   const BrickPool& pool) {
+std::vector<ProducedTile> SurfaceProducer::produce(std::span<const BrickRequest> requests, BrickPool& pool) {
+    if (pool.packed() == nullptr)
+        throw Error(Fault::internal, "brick pool", "the bricks of a surface in a pool of dense bricks");
     std::vector<ProducedTile> produced(requests.size());
     for (std::size_t i = 0; i < requests.size(); i += std::size_t(batch_)) {
         const std::size_t count = std::min(std::size_t(batch_), requests.size() - i);
-        produce_batch(requests.subspan(i, count), pool);
-        if (!finds_empty_) continue;
-        const auto found = found_.read_all<std::uint32_t>(count);
-        for (std::size_t k = 0; k < count; ++k)
-            produced[i + k].constant = found[k] == 0;
+        produce_batch(requests.subspan(i, count), pool, std::span(produced).subspan(i, count));
     }
     return produced;
 }
@@ -96,7 +100,9 @@ void SurfaceProducer::gather_pairs(std::span<const BrickRequest> requests) {
 void SurfaceProducer::gather_pairs_of_mip(const Tile& tile, std::uint32_t number, int mip,
                                           std::span<const std::uint32_t> triangles) {
     const int side = shape_.mip_side(mip);
-    const int rows = std::max(1, turns_per_pair / (side * (surface_.has_mask ? 81 : 17)));
+    const int turns = turns_of_voxel + (surface_.has_mask ? turns_of_mask : 0) +
+                      (surface_.has_color && surface_.has_texture ? turns_of_texture : 0);
+    const int rows = std::max(1, turns_per_pair / (side * turns));
     const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
     const int voxel = shape_.voxel_side(tile.level) << mip;
     const glm::ivec3 low = glm::ivec3(tile.position) * (shape_.m >> mip) - 1;  // of the border
@@ -135,52 +141,77 @@ void SurfaceProducer::splat(std::size_t chunk) {
     }
 }
 
-void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool) {
-    std::vector<interop::BrickTile> tiles;
-    tiles.reserve(requests.size());
+void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, BrickPool& pool,
+                                    std::span<ProducedTile> produced) {
+    batch_tiles_.clear();
     for (const BrickRequest& request : requests) {
         const int side = shape_.voxel_side(request.tile.level);
         const int size = shape_.cell_base() == 2 ? int(std::bit_width(unsigned(side))) - 1 : side;
-        interop::BrickTile& tile = tiles.emplace_back();
+        interop::BrickTile& tile = batch_tiles_.emplace_back();
         tile.low = glm::ivec3(request.tile.position) * shape_.m;
         tile.size = size;
-        tile.slot = request.slot;
+        tile.first_word = NO_ROOM;
     }
-    tiles_.write(0, tiles.data(), tiles.size() * sizeof(interop::BrickTile));
+    tiles_.write(0, batch_tiles_.data(), batch_tiles_.size() * sizeof(interop::BrickTile));
 
     gather_pairs(requests);
     for (std::size_t chunk = 0; chunk < pairs_.size(); ++chunk)
         splat(chunk);
 
+    number_records(requests.size());
+    find_room(requests, pool, produced);
     pack(requests.size(), pool);
+}
+
+void SurfaceProducer::dispatch(gl::Program& program, std::size_t tile_count,
+                               std::size_t threads_per_tile) const {
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    program.use();
+    program.set("tile_count", unsigned(tile_count));
+    gl::dispatch_threads(tile_count * threads_per_tile, THREADS_PER_GROUP);
+}
+
+/// Makes the heads of the batch's bricks, and counts what they need.
+void SurfaceProducer::number_records(std::size_t tile_count) {
+    tiles_.bind_storage(SSBO_BRICK_TILES);
+    scratch_.bind_storage(SSBO_BRICK_SCRATCH);
+    heads_.bind_storage(SSBO_BRICK_HEADS);
+    counts_.bind_storage(SSBO_BRICK_COUNTS);
+    for (int mip = 0; mip <= shape_.mips; ++mip) {
+        masks_.set("mip", mip);
+        dispatch(masks_, tile_count, std::size_t(shape_.blocks(mip)));
+    }
+    dispatch(border_masks_, tile_count, std::size_t(shape_.groups() - shape_.inner_groups()));
+    dispatch(summarize_, tile_count, std::size_t(shape_.summary_words()));
+    dispatch(count_records_, tile_count, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+/// Gives the batch's bricks room in the pool. Empty ones need none: the oracle may let them through, with
+/// N = 3, and with alpha masks, which the oracle decides exactly and bricks sample.
+void SurfaceProducer::find_room(std::span<const BrickRequest> requests, BrickPool& pool,
+                                std::span<ProducedTile> produced) {
+    const auto counts = counts_.read_all<interop::PackedCount>(requests.size());
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+        if (counts[i].words == 0) {
+            produced[i].constant = true;
+        } else if (pool.reserve(requests[i].slot, counts[i].words)) {
+            batch_tiles_[i].first_word = pool.packed()->run(requests[i].slot).first;
+        } else {
+            produced[i].words_without_room = counts[i].words;
+        }
+    }
+    tiles_.write(0, batch_tiles_.data(), batch_tiles_.size() * sizeof(interop::BrickTile));
 }
 
 /// Turns the gathered masks and sums of the batch into bricks.
 void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
-    const auto count = unsigned(tile_count);
-    tiles_.bind_storage(SSBO_BRICK_TILES);
-    scratch_.bind_storage(SSBO_BRICK_SCRATCH);
     pool.bind_for_writing();
-    if (finds_empty_) {
-        found_.fill(0);
-        found_.bind_storage(SSBO_BRICK_FOUND);
-    }
-    auto dispatch = [&](const gl::Program& program, std::size_t threads) {
-        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-        program.use();
-        program.set("tile_count", count);
-        gl::dispatch_threads(threads, THREADS_PER_GROUP);
-    };
-    for (int mip = 0; mip <= shape_.mips; ++mip) {
-        masks_.set("mip", mip);
-        dispatch(masks_, count * std::size_t(shape_.blocks(mip)));
-    }
-    dispatch(summarize_, count * ((std::size_t(shape_.blocks()) + 63) / 64));
-    glMemoryBarrier(
-        GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);  // rays of an earlier pass may still read evicted slots
-    resolve_.set("pool_levels", pool.levels());
-    dispatch(resolve_, count * voxels_per_brick(shape_));
-    // The next batch reuses the scratch; rays fetch the texels.
+    // Rays of an earlier pass may still read what was there.
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    dispatch(store_heads_, tile_count, std::size_t(shape_.head_words()));
+    dispatch(resolve_, tile_count, voxels_per_brick(shape_));
+    // The next batch reuses the scratch; rays fetch the words.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);
 }

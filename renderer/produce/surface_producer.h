@@ -22,9 +22,9 @@ struct SurfaceProducerLimits {
 };
 
 /// Fills bricks by voxelizing the tile's region four times finer, from the triangles in the tile's list:
-/// coverage is the share of finer bits, base colour and normal are means over them. All work is on the GPU,
-/// for many bricks at once. Each mip is voxelized like a brick of its own, so that it equals the matching
-/// part of the parent's brick.
+/// these are the voxels' marks, and base colour and normal are means over the surface. All work is on the
+/// GPU, for many bricks at once; the CPU only learns how much room each brick needs. Each mip is voxelized
+/// like a brick of its own, so that it equals the matching part of the parent's brick.
 class SurfaceProducer final : public Producer {
 public:
     /// Refers to the surface and the lists, which must outlive it.
@@ -32,11 +32,15 @@ public:
                     voxelizer::TriangleIndex& lists, const gl::ShaderSource& shaders,
                     const SurfaceProducerLimits& limits = {});
 
-    std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+    std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, BrickPool& pool) override;
 
 private:
-    void produce_batch(std::span<const BrickRequest> requests, const BrickPool& pool);
+    void produce_batch(std::span<const BrickRequest> requests, BrickPool& pool,
+                       std::span<ProducedTile> produced);
+    void number_records(std::size_t tile_count);
+    void find_room(std::span<const BrickRequest> requests, BrickPool& pool, std::span<ProducedTile> produced);
     void pack(std::size_t tile_count, const BrickPool& pool);
+    void dispatch(gl::Program& program, std::size_t tile_count, std::size_t threads_per_tile) const;
     void gather_pairs(std::span<const BrickRequest> requests);
     void gather_pairs_of_mip(const Tile& tile, std::uint32_t number, int mip,
                              std::span<const std::uint32_t> triangles);
@@ -45,17 +49,19 @@ private:
     TreeShape shape_;
     const voxelizer::GpuSurface& surface_;
     voxelizer::TriangleIndex& lists_;
-    /// The oracle may let empty tiles through: with N = 3, and with alpha masks, which the oracle decides
-    /// exactly and bricks sample. Then the shaders report which bricks are empty.
-    bool finds_empty_;
     int batch_ = 1;          ///< bricks at a time
     std::size_t pair_room_;  ///< pairs that are sent to the driver at once
     gl::Program splat_;
     gl::Program masks_;
+    gl::Program border_masks_;
     gl::Program summarize_;
+    gl::Program count_records_;
+    gl::Program store_heads_;
     gl::Program resolve_;
+    std::vector<interop::BrickTile> batch_tiles_;
     gl::Buffer tiles_;
-    gl::Buffer found_;  // SSBO_BRICK_FOUND
+    gl::Buffer heads_;
+    gl::Buffer counts_;
     gl::Buffer scratch_;
     gl::Buffer pair_buffer_;
     std::vector<std::uint32_t> listed_;                   // triangles of a tile

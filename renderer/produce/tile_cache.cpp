@@ -9,6 +9,8 @@
 namespace cairn::renderer {
 namespace {
 
+constexpr std::size_t most_words_known = 65536;
+
 std::vector<TileQuery> bricks_first(std::span<const TileQuery> queries, const Tree& tree) {
     std::vector<TileQuery> sorted(queries.begin(), queries.end());
     const auto place = [&](const TileQuery& query) {
@@ -36,12 +38,14 @@ TileCache::TileCache(std::unique_ptr<Content> content, const PoolSizes& sizes)
       pool_(content_->shape(), content_->channels(), sizes.brick_bytes),
       tree_(content_->shape(), pool_.slot_count(), sizes.node_bytes, content_->oracle().child_mask(Tile{}),
             content_->has_constant()) {
+    tree_.tell_of_free_slots([this](int slot) { pool_.release(slot); });
+    pool_.make_room_by([this](int slot) { return evict_for(slot); });
     if (sizes.cache_bytes == 0) return;
     if (content_->has_low_frequency()) {
         throw Error(Fault::usage, "brick cache", "it does not record which tiles of this content are final",
                     "leave it out");
     }
-    cache_.emplace(pool_, sizes.cache_bytes);
+    cache_.emplace(content_->shape(), pool_, sizes.cache_bytes);
     tree_.record_evictions(true);
 }
 
@@ -51,7 +55,7 @@ TileCache::Answer TileCache::answer(std::span<const TileQuery> queries) {
     for (const TileQuery& query : bricks_first(queries, tree_))
         settle(query, true, answer);
     const auto before_bricks = Clock::now();
-    produce_requests();
+    answer.bricks -= produce_requests();
     counted_.tile_queries += queries.size();
     counted_.tree_ms += milliseconds(before_bricks - start);
     return answer;
@@ -69,7 +73,7 @@ TileCache::Answer TileCache::answer_until(std::span<const TileQuery> queries, co
         const std::size_t before = all.count();
         for (; next != urgent.end() && all.count() - before < batch; ++next)
             settle(*next, next->kind != QueryKind::stand_in && !budget.is_prefetch, all);
-        produce_requests();
+        all.bricks -= produce_requests();
         glFinish();
         pace_.learn(milliseconds_since(start), all.count() - before);
     }
@@ -118,33 +122,78 @@ bool TileCache::request(std::uint32_t entry, bool may_stay) {
     if (!tree_.wants_brick(entry)) return false;
     const std::optional<int> slot = tree_.add_brick(entry, may_stay);
     if (!slot) return false;
+    // Before the slot gets other room: the brick that had to go is still where the slot's was.
+    if (cache_) cache_->store(tree_.take_evicted());
+    if (!expect_room(*slot, tree_.tile(entry))) {
+        tree_.take_brick_back(entry);
+        return false;
+    }
     requests_.push_back({tree_.tile(entry), *slot});
     requested_entries_.push_back(entry);
     return true;
 }
 
+/// Makes room for what a packed brick takes, if that is known, or else for what one takes on average: so few
+/// are produced that then find no room, and none of them twice.
+bool TileCache::expect_room(int slot, const Tile& tile) {
+    const PackedBricks* const packed = pool_.packed();
+    if (packed == nullptr) return true;
+    const auto known = words_without_room_.find(tile);
+    if (known != words_without_room_.end()) return pool_.reserve(slot, known->second);
+    const std::size_t mean = packed->mean_words();
+    while (expected_words_ + mean > packed->free_words()) {
+        if (!evict_for(slot)) return false;
+    }
+    expected_words_ += mean;
+    return true;
+}
+
+/// Evicts a brick whose room a slot may have.
+bool TileCache::evict_for(int slot) {
+    if (!tree_.evict_brick_for(slot)) return false;
+    if (cache_) cache_->store(tree_.take_evicted());
+    return true;
+}
+
 /// Restores the requested bricks that main memory holds.
-void TileCache::restore_requests() {
+/// @return  how many found no room.
+std::size_t TileCache::restore_requests() {
     cache_->store(tree_.take_evicted());
     const auto start = Clock::now();
     std::vector<BrickRequest> unknown;
     std::vector<std::uint32_t> unknown_entries;
+    std::size_t without_room = 0;
     for (std::size_t i = 0; i < requests_.size(); ++i) {
-        if (cache_->restore(requests_[i].tile, requests_[i].slot)) continue;
+        const BrickCache::Restored restored = cache_->restore(requests_[i].tile, requests_[i].slot);
+        if (restored == BrickCache::Restored::no_room) {
+            tree_.take_brick_back(requested_entries_[i]);
+            ++without_room;
+        }
+        if (restored != BrickCache::Restored::not_cached) continue;
         unknown.push_back(requests_[i]);
         unknown_entries.push_back(requested_entries_[i]);
     }
     requests_ = std::move(unknown);
     requested_entries_ = std::move(unknown_entries);
     counted_.upload_ms += milliseconds_since(start);
+    return without_room;
 }
 
 /// Fills the requested slots: with bricks from main memory if it holds them, else with produced ones.
-void TileCache::produce_requests() {
-    if (cache_) restore_requests();
+/// @return  how many found no room.
+std::size_t TileCache::produce_requests() {
+    expected_words_ = 0;
+    std::size_t without_room = cache_ ? restore_requests() : 0;
     const std::vector<ProducedTile> found = content_->producer().produce(requests_, pool_);
     for (std::size_t i = 0; i < found.size(); ++i) {
         const std::uint32_t entry = requested_entries_[i];
+        if (found[i].words_without_room != 0) {  // the rays ask again in the next round
+            if (words_without_room_.size() >= most_words_known) words_without_room_.clear();
+            words_without_room_[tree_.tile(entry)] = found[i].words_without_room;
+            tree_.take_brick_back(entry);
+            ++without_room;
+            continue;
+        }
         if (content_->has_low_frequency()) tree_.set_produced(entry);
         if (found[i].low_frequency) tree_.set_final(entry);
         if (!found[i].constant) continue;
@@ -155,11 +204,13 @@ void TileCache::produce_requests() {
     counted_.upload_ms += content_->producer().upload_ms();
     requests_.clear();
     requested_entries_.clear();
+    return without_room;
 }
 
 void TileCache::upload() {
     const auto start = Clock::now();
     tree_.upload();
+    pool_.upload();
     counted_.upload_ms += milliseconds_since(start);
 }
 

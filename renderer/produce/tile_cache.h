@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "base/clock.h"
@@ -61,7 +62,8 @@ public:
     /// @return  false if there is no room.
     bool subdivide(std::uint32_t entry);
 
-    /// Sends the nodes that changed to the GPU. Call it before rays march again.
+    /// Sends the nodes that changed, and the places of new bricks, to the GPU. Call it before rays march
+    /// again.
     void upload();
 
     /// Tree::begin_round().
@@ -111,8 +113,10 @@ public:
 private:
     void settle(const TileQuery& query, bool may_stay, Answer& answer);
     [[nodiscard]] bool request(std::uint32_t entry, bool may_stay);
-    void restore_requests();
-    void produce_requests();
+    bool evict_for(int slot);
+    [[nodiscard]] bool expect_room(int slot, const Tile& tile);
+    [[nodiscard]] std::size_t restore_requests();
+    [[nodiscard]] std::size_t produce_requests();
 
     std::unique_ptr<Content> content_;
     BrickPool pool_;
@@ -121,6 +125,9 @@ private:
     BatchPace pace_;
     std::vector<BrickRequest> requests_;  // requests that wait to be produced together
     std::vector<std::uint32_t> requested_entries_;
+    std::size_t expected_words_ = 0;  // of their packed bricks
+    /// Words of packed bricks that found no room, so that they are not produced in vain again.
+    std::unordered_map<Tile, std::uint32_t, TileHash> words_without_room_;
     Counters counted_;  // without those that the tree and the brick cache count
 };
 

@@ -171,8 +171,7 @@ VolumeProducer::VolumeProducer(const VolumeShape& shape, const Field& field, con
     upload_ = gl::Buffer(batch_ * brick.count(), "brick upload");
 }
 
-std::vector<ProducedTile> VolumeProducer::produce(std::span<const BrickRequest> requests,
-                                                  const BrickPool& pool) {
+std::vector<ProducedTile> VolumeProducer::produce(std::span<const BrickRequest> requests, BrickPool& pool) {
     std::vector<ProducedTile> produced(requests.size());
     upload_ms_ = 0.0;
     for (std::size_t i = 0; i < requests.size(); i += batch_) {

@@ -69,7 +69,7 @@ public:
     /// it.
     VolumeProducer(const VolumeShape& shape, const Field& field, const DensityTest& test,
                    std::size_t batch_bytes = std::size_t(4) << 20U);
-    std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, const BrickPool& pool) override;
+    std::vector<ProducedTile> produce(std::span<const BrickRequest> requests, BrickPool& pool) override;
     [[nodiscard]] double upload_ms() const override { return upload_ms_; }
 
 private:

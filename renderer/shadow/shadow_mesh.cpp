@@ -46,8 +46,8 @@ gl::TextureHandle make_texture(const glm::ivec2& size, std::span<const std::uint
     GLuint id = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &id);
     gl::TextureHandle texture(id);
-    glTextureStorage2D(id, GLsizei(std::bit_width(unsigned(std::max(size.x, size.y)))), GL_SRGB8_ALPHA8, size.x,
-                       size.y);
+    glTextureStorage2D(id, GLsizei(std::bit_width(unsigned(std::max(size.x, size.y)))), GL_SRGB8_ALPHA8,
+                       size.x, size.y);
     glm::ivec2 side = size;
     std::size_t first = 0;
     for (GLint level = 0; first < levels.size(); ++level) {
@@ -145,8 +145,7 @@ std::size_t ShadowMesh::texture_of(const scenes::Scene& scene, int number, std::
     if (!is_new) return place->second;
     if (number < 0) {
         constexpr std::array<std::uint32_t, 1> white = {0xFFFFFFFFU};
-        textures_.push_back(
-            make_texture(glm::ivec2(1), white, scenes::Wrap::repeat, scenes::Wrap::repeat));
+        textures_.push_back(make_texture(glm::ivec2(1), white, scenes::Wrap::repeat, scenes::Wrap::repeat));
         return place->second;
     }
     const scenes::Texture& texture = scene.textures[std::size_t(number)];

@@ -61,7 +61,8 @@ constexpr double MAX_SHADOW_PIXEL_ERROR = 64.0;
 
 /// Which shadows a view has, and how finely they are sampled.
 ///
-/// Limits of shadow rays, in voxels as a shadow ray meets them:
+/// Limits of shadow rays, in voxels of the size that a shadow ray meets. (It meets their marks, of a quarter
+/// of that size, and mostly stays far within these limits.)
 /// - A shadow ends up to a voxel and a half beside its true edge.
 /// - No light passes a sheet, however thin.
 /// - A light nearer than a voxel and a half to a surface may be hidden by that surface, on either side.

@@ -4,15 +4,28 @@
 #include "interop/march.h"
 #define RAYS_WIDEN 1
 #define VISIT_TURNS 0
+#define FIRST_MARK_ENDS 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #include "march/launch.glsl"
+
+#if MARKS
+bool meets_marks(Ray ray, float voxel_side) { return true; }
+bool passes_over(Ray ray, vec3 corner, float side, float t) { return false; }
+#endif
 
 bool visit(inout Ray ray, Sample s) {
     state.color.a = behind(state.color.a, coverage_of(s), s.share);
     state.depth = s.t;
     return state.color.a > OPAQUE_TRANSMITTANCE;
 }
+
+#if SEEKS_MARKS
+void take_first_mark(inout Ray ray, Place place) {
+    bool goes_on;
+    take_voxel(ray, place, 0, 1.0, goes_on);
+}
+#endif
 
 void main() {
     Launch launch;

@@ -20,7 +20,7 @@
 #define MESH_MISS 1e30               // distance of a pixel without a mesh
 #define MESH_NEAREST_PART 9.5367431640625e-7  // 2^-20: least distance that is drawn, in sides of the mesh
 // Voxels whose centres lie lower over a mesh are part of its surface and cast no shadow on it, in sides of a
-// voxel. The centre of a voxel that touches a triangle lies at most half a diagonal (0.87) from the
+// voxel, or of a mark. The centre of a voxel that touches a triangle lies at most half a diagonal (0.87) from the
 // triangle's plane; a little further, where the surface bends.
 #define MESH_SELF_SHADOW_HEIGHT 1.125
 

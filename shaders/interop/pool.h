@@ -7,9 +7,13 @@
 #endif
 
 #define TEXTURE_NODES 0         // NodeEntry
+// Dense bricks.
 #define TEXTURE_BRICK_MASKS 1
 #define TEXTURE_BRICK_COLOR 2   // colour and coverage, or coverage alone, or a volume's density
 #define TEXTURE_BRICK_NORMAL 3
+// Packed bricks.
+#define TEXTURE_BRICK_WORDS 1   // R32UI: the words of all bricks (shaders/pool/packed_brick.glsl)
+#define TEXTURE_BRICK_STARTS 2  // R32UI: a slot's first word
 #define TEXTURE_NODE_MEANS 5    // RGBA8 in a uint per node entry: the value of constant tiles
 
 // NodeEntry.brick: the slot + 1, and flags of the tile.
@@ -21,6 +25,9 @@
 
 // Voxels across the root cube stay below this, because a ray state packs three coordinates in 63 bits.
 #define MAX_RESOLUTION_BITS 21
+
+// Packed bricks keep the marks of a voxel: 2^MARK_BITS finer cells along each axis. Rays count in these cells.
+#define MARK_BITS 2
 
 #ifdef __cplusplus
 namespace cairn::interop {

@@ -12,9 +12,11 @@
 #define SSBO_BRICK_SCRATCH 7  // masks, then sums, of every voxel of the batch (shaders/produce/scratch.glsl)
 // Bindings of the passes that resolve, which read no surface.
 #define SSBO_BRICK_MASKS 0    // masks and summaries of the brick pool
-#define SSBO_BRICK_FOUND 1    // a word per tile of the batch: not 0 if a voxel of the tile is occupied
 #define IMAGE_BRICK_COLOR 0
 #define IMAGE_BRICK_NORMAL 1
+#define IMAGE_BRICK_WORDS 0       // the words of all packed bricks
+#define SSBO_BRICK_HEADS 0        // the heads of the batch's packed bricks, HEAD_WORDS each
+#define SSBO_BRICK_COUNTS 1       // PackedCount per tile of the batch
 
 #ifdef __cplusplus
 namespace cairn::interop {
@@ -25,7 +27,7 @@ struct BrickTile {
     ivec3 low;      // low corner without the border, in voxels of the tile's level
     // log2 of a voxel's side in lattice units; the side itself if N = 3.
     int size;
-    int slot;
+    uint first_word;  // where the brick lies in the pool, or NO_ROOM
     int padding1, padding2, padding3;
 };
 
@@ -37,6 +39,13 @@ struct FractalTile {
     uint neighbours;    // bit x + 3 (y + 3 z): the tile (x, y, z) - 1 away is not empty
     uint padding1, padding2, padding3;
 };
+
+// What a packed brick needs room for.
+struct PackedCount {
+    uint records;   // occupied voxels of all mips, border included
+    uint words;     // all words of the brick; 0: no voxel is occupied, and none is needed
+};
+#define NO_ROOM 0xFFFFFFFFu  // in BrickTile.first_word: the brick is not stored
 
 // A triangle that may touch a tile of the batch.
 struct BrickPair {
@@ -50,6 +59,7 @@ struct BrickPair {
 static_assert(sizeof(BrickTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(FractalTile) == 32, "GLSL sees another layout");
 static_assert(sizeof(BrickPair) == 12, "GLSL sees another layout");
+static_assert(sizeof(PackedCount) == 8, "GLSL sees another layout");
 }  // namespace cairn::interop
 #endif
 

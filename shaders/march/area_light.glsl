@@ -94,7 +94,7 @@ vec2 cone_place(vec3 point, vec2 place) {
 #if WINDOWS
     const float kept = 1.0;
 #else
-    const float root = float(ROOT_SIDE);
+    const float root = cell_length(ROOT_SHIFT);
     const float widest = root / float(BRICK_M) / max(distance(point, vec3(0.5 * root)), 1.0);
     const float kept = min(widest / sample_at(point, vec2(0.5)).width, 1.0);
 #endif

@@ -13,15 +13,33 @@ bool is_occupied(ivec3 voxel, Place place, int mip) {
     const ivec3 b = place_in(voxel, brick_voxel_shift_of(place) + mip, M_SHIFT - mip);
     const ivec3 c = cell_of(b, BLOCK_SHIFT);
     const int blocks = MIP_BLOCKS_PER_SIDE(mip);
-    const int word = place.slot * MASK_WORDS + first_mask_of(mip) + c.x + blocks * (c.y + blocks * c.z);
-    return empty_voxel_shift(texelFetch(brick_masks, word).xy, b - cell_low(b, BLOCK_SHIFT)) < 0;
+    const uvec2 mask = mask_word(place.brick, first_mask_of(mip) + c.x + blocks * (c.y + blocks * c.z));
+    return empty_voxel_shift(mask, b - cell_low(b, BLOCK_SHIFT)) < 0;
+}
+
+// Takes what the ray meets in a voxel until something counts: a voxel gives its share once. Moves the ray
+// behind the voxel.
+bool take_once(inout Ray ray, Place place, int mip, float share, out bool goes_on) {
+#if MARKS
+    const int shift = brick_voxel_shift_of(place) + mip;
+    const ivec3 voxel = cell_of(ray.cell, shift);
+    goes_on = true;
+    is_counted = false;
+    for (int i = 0; i < 10 && goes_on && !is_counted && all(equal(cell_of(ray.cell, shift), voxel)); ++i) {
+        if (!take_voxel(ray, place, mip, share, goes_on)) return false;
+    }
+    if (goes_on && all(equal(cell_of(ray.cell, shift), voxel))) goes_on = step_over(ray, shift);
+    return true;
+#else
+    return take_voxel(ray, place, mip, share, goes_on);
+#endif
 }
 
 // Takes both mips of the occupied coarse cell around the ray's voxel. `goes_on` and the result are as those
 // of take_voxel().
 bool take_both(inout Ray ray, Place place, out bool goes_on) {
     const int fine_shift = voxel_shift_of(place);
-    const float side = float(cell_side(fine_shift));
+    const float side = cell_length(fine_shift);
 #if PROGRESSIVE
     const bool blends = place.brick_shift == place.tile_shift;  // a brick that stands in is not blended
 #else
@@ -29,11 +47,11 @@ bool take_both(inout Ray ray, Place place, out bool goes_on) {
 #endif
     const float size = blended_size(brick_voxel_shift_of(place), width_at_cell(ray, fine_shift + 1));
     const float f = blends ? clamp(size / side - 1.0, 0.0, 1.0) : 0.0;
-    const ivec3 cell = cell_of(ray.voxel, fine_shift + 1);
+    const ivec3 cell = cell_of(ray.cell, fine_shift + 1);
     goes_on = true;
     if (f > 0.0) {
         Ray whole = ray;
-        if (!take_voxel(whole, place, place.mip + 1, f, goes_on)) return false;
+        if (!take_once(whole, place, place.mip + 1, f, goes_on)) return false;
         if (f >= 1.0) {
             ray = whole;
             return true;
@@ -41,12 +59,12 @@ bool take_both(inout Ray ray, Place place, out bool goes_on) {
     }
     // A line crosses at most four of eight cells.
     for (int i = 0; i < 4; ++i) {
-        if (is_occupied(ray.voxel, place, place.mip)) {
-            if (!take_voxel(ray, place, place.mip, 1.0 - f, goes_on)) return false;
+        if (is_occupied(ray.cell, place, place.mip)) {
+            if (!take_once(ray, place, place.mip, 1.0 - f, goes_on)) return false;
         } else {
             goes_on = step_over(ray, fine_shift);
         }
-        if (!goes_on || any(notEqual(cell_of(ray.voxel, fine_shift + 1), cell))) return true;
+        if (!goes_on || any(notEqual(cell_of(ray.cell, fine_shift + 1), cell))) return true;
     }
     return true;
 }

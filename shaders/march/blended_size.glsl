@@ -4,7 +4,7 @@
 // are there, and coarser ones are less accurate. In the second half the size grows to that of the parent's
 // voxels, so that nothing changes where those take over.
 float blended_size(int brick_voxel_shift, float width) {
-    const float side = float(cell_side(brick_voxel_shift));
+    const float side = cell_length(brick_voxel_shift);
     precise float size = width * width / (float(TREE_N) * side);
     return max(size, side);
 }
@@ -14,7 +14,7 @@ int blended_mip(int brick_voxel_shift, float width) {
     const float size = blended_size(brick_voxel_shift, width);
     int mip = 0;
     for (int k = 1; k < BRICK_MIPS; ++k) {
-        if (float(cell_side(brick_voxel_shift + k)) <= size) mip = k;
+        if (cell_length(brick_voxel_shift + k) <= size) mip = k;
     }
     return mip;
 }
@@ -24,8 +24,8 @@ int blended_mip(int brick_voxel_shift, float width) {
 // the sum.
 float width_at_cell(Ray ray, int shift) {
 #if RAYS_WIDEN
-    const vec3 low = vec3(cell_low(ray.voxel, shift)) - ray.origin;
-    const vec3 away = max(max(low, -(low + float(cell_side(shift)))), vec3(0.0));
+    const vec3 low = corner_of(cell_low(ray.cell, shift)) - ray.origin;
+    const vec3 away = max(max(low, -(low + cell_length(shift))), vec3(0.0));
     precise float square = away.x * away.x + away.y * away.y + away.z * away.z;
     precise float width = ray.cone_base + ray.cone_slope * sqrt(square);
     return width;
@@ -40,7 +40,7 @@ float width_at_cell(Ray ray, int shift) {
 // place alone, not on the way there.
 bool sees_mip(Ray ray, int brick_voxel_shift, int mip) {
     const float width = width_at_cell(ray, brick_voxel_shift + mip + 1);
-    const float side = float(cell_side(brick_voxel_shift));
+    const float side = cell_length(brick_voxel_shift);
     if (mip == 0) return width >= side;
-    return blended_size(brick_voxel_shift, width) >= float(cell_side(brick_voxel_shift + mip));
+    return blended_size(brick_voxel_shift, width) >= cell_length(brick_voxel_shift + mip);
 }

@@ -1,4 +1,6 @@
-// Coverage and filtered texels of the voxels of a brick, for rays.
+// Coverage and filtered attributes of the voxels of a brick, for rays.
+#include "pool/brick_normals.glsl"
+#include "pool/coverage.glsl"
 
 // The transmittance behind a voxel. Voxels of one surface cover different parts of a pixel, so their shares
 // add up instead of multiplying; and a voxel that is at least half covered is opaque, so that no light leaks
@@ -7,24 +9,74 @@ float behind(float transmittance, float coverage, float share) {
     return max(transmittance - share * min(2.0 * coverage, 1.0), 0.0);
 }
 
-float coverage_of(Sample s) {
-    const vec4 texel = texelFetch(brick_color, s.texel + 1 + s.voxel, 0);
+// Where the attributes of a voxel of the sample's brick and mip are. `v`: place in the mip, border included:
+// [-1, MIP_M(mip)].
+#if PACKED
+struct VoxelPlace {
+    int word;    // first word of its record; -1: the voxel is empty
+    int record;  // number of its record
+};
+
+VoxelPlace voxel_place(Sample s, ivec3 v) {
+    const GroupBit at = group_bit(v, s.mip);
+    const uvec2 occupied = mask_word(s.brick, SUMMARY_WORDS + at.group);
+    const int record = int(brick_word(s.brick + HEAD_RANKS + at.group)) + bits_below(occupied, at.bit);
+    const int word = has_bit(occupied, at.bit) ? s.brick + HEAD_WORDS + record * RECORD_WORDS : -1;
+    return VoxelPlace(word, record);
+}
+
+// Colour (square root of the linear one) times coverage, and coverage. Without colours, coverage alone, in all
+// four.
+vec4 color_at(Sample s, VoxelPlace place) {
+    if (place.word < 0) return vec4(0.0);
 #if HAS_COLOR
-    return texel.a;
+    return unpackUnorm4x8(brick_word(place.word + 1));
 #else
-    return texel.r;
+    const int marks = s.brick + int(brick_word(s.brick + HEAD_MARKS)) + 2 * place.record;
+    return vec4(coverage_of_marks(two_brick_words(marks)));
 #endif
 }
+
+// As pool/brick_normals.glsl packs them; 0: none.
+uint normals_at(VoxelPlace place) { return place.word < 0 ? 0u : brick_word(place.word); }
+#else
+#define VoxelPlace ivec3
+
+ivec3 voxel_place(Sample s, ivec3 v) { return s.texel + 1 + v; }
+
+vec4 color_at(Sample s, ivec3 texel) {
+#if HAS_COLOR
+    return texelFetch(brick_color, texel, 0);
+#else
+    return texelFetch(brick_color, texel, 0).rrrr;
+#endif
+}
+
+uint normals_at(ivec3 texel) { return normal_bits(texelFetch(brick_normal, texel, 0)); }
+#endif
+
+#if MARKS
+// The marks of an occupied voxel; `v`: place in the mip, without the border.
+uvec2 marks_of(int brick, int mip, ivec3 v) {
+    const GroupBit at = inner_group_bit(v, mip);
+    const uvec2 occupied = mask_word(brick, SUMMARY_WORDS + at.group);
+    const int record = int(brick_word(brick + HEAD_RANKS + at.group)) + bits_below(occupied, at.bit);
+    return two_brick_words(brick + int(brick_word(brick + HEAD_MARKS)) + 2 * record);
+}
+
+// A mark is a solid cell.
+float coverage_of(Sample s) { return s.is_mark ? 1.0 : color_at(s, voxel_place(s, s.voxel)).a; }
+#else
+float coverage_of(Sample s) { return color_at(s, voxel_place(s, s.voxel)).a; }
+#endif
 
 // The texels around a sample's middle that a filtered fetch mixes. The centres of eight texels are the
 // corners of a cube around the middle. Four of them are used: those of the tetrahedron along the cube's
 // diagonal that holds the middle. That is as smooth as a trilinear fetch, for half the fetches (tetrahedral
 // interpolation: Kasson et al. 1995). The texel of the voxel itself is among them.
 struct Corners {
-    ivec3 low;
-    ivec3 next;
-    ivec3 far;
-    vec4 weights;  // weights of the texels low, next, far and low + 1
+    VoxelPlace low, next, far, high;
+    vec4 weights;  // of the four
 };
 
 // The weight of the voxel itself, the only one that is surely occupied, must not vanish: so much is added to
@@ -32,7 +84,8 @@ struct Corners {
 #define VOXEL_EXTRA_WEIGHT 0.125
 
 // Texels are filtered by hand, because the rounding of the samplers' filter depends on the slot's place in
-// the pool and on the driver. The brick's border keeps all texels inside the slot.
+// the pool and on the driver, and because packed bricks are no textures. The brick's border keeps all corners
+// inside the brick.
 Corners corners_around(Sample s) {
     const vec3 place = s.middle + 0.5;  // relative to the centre of the border's first texel
     const vec3 f = fract(place);
@@ -41,17 +94,19 @@ Corners corners_around(Sample s) {
     const float other = max(min(f.x, f.y), min(max(f.x, f.y), f.z));
     const ivec3 up = f.x == most ? ivec3(1, 0, 0) : f.y == most ? ivec3(0, 1, 0) : ivec3(0, 0, 1);
     const ivec3 left_out = f.z == least ? ivec3(0, 0, 1) : f.y == least ? ivec3(0, 1, 0) : ivec3(1, 0, 0);
+    const ivec3 low = ivec3(floor(place)) - 1;
     Corners c;
-    c.low = s.texel + ivec3(floor(place));
-    c.next = c.low + up;
-    c.far = c.low + 1 - left_out;
+    c.low = voxel_place(s, low);
+    c.next = voxel_place(s, low + up);
+    c.far = voxel_place(s, low + 1 - left_out);
+    c.high = voxel_place(s, low + 1);
     c.weights = vec4(1.0 - most, most - other, other - least, least);
-    const ivec3 corner = s.texel + 1 + s.voxel - c.low;
+    const ivec3 corner = s.voxel - low;
     c.weights += VOXEL_EXTRA_WEIGHT * vec4(equal(ivec4(corner.x + corner.y + corner.z), ivec4(0, 1, 2, 3)));
     return c;
 }
 
-vec4 filtered(sampler3D texels, Corners c) {
-    return c.weights.x * texelFetch(texels, c.low, 0) + c.weights.y * texelFetch(texels, c.next, 0) +
-           c.weights.z * texelFetch(texels, c.far, 0) + c.weights.w * texelFetch(texels, c.low + 1, 0);
+vec4 filtered_color(Sample s, Corners c) {
+    return c.weights.x * color_at(s, c.low) + c.weights.y * color_at(s, c.next) +
+           c.weights.z * color_at(s, c.far) + c.weights.w * color_at(s, c.high);
 }

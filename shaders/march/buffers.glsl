@@ -2,7 +2,7 @@
 #include "interop/march.h"
 #include "interop/pool.h"
 #include "interop/tile_query.h"
-#include "pool/brick_masks.glsl"
+#include "pool/packed_brick.glsl"
 
 layout(std140, binding = UBO_VIEW) uniform ViewBlock { MarchView view; };
 layout(std430, binding = SSBO_RAYS) buffer RayBlock { RayState rays[]; };
@@ -20,9 +20,14 @@ layout(binding = TEXTURE_NODES) uniform usamplerBuffer nodes;
 #if HAS_CONSTANT
 layout(binding = TEXTURE_NODE_MEANS) uniform usamplerBuffer node_means;
 #endif
+#if PACKED
+layout(binding = TEXTURE_BRICK_WORDS) uniform usamplerBuffer brick_words;
+layout(binding = TEXTURE_BRICK_STARTS) uniform usamplerBuffer brick_starts;
+#else
 layout(binding = TEXTURE_BRICK_MASKS) uniform usamplerBuffer brick_masks;
 layout(binding = TEXTURE_BRICK_COLOR) uniform sampler3D brick_color;
 layout(binding = TEXTURE_BRICK_NORMAL) uniform sampler3D brick_normal;
+#endif
 
 uniform uint pass_number;
 uniform uint query_capacity;      // queries that fit, at most QUERY_CAPACITY

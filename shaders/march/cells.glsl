@@ -1,6 +1,14 @@
-// Cells: aligned cubes of voxels whose side is a power of CELL_BASE, in voxels of the finest level. The
+// Cells: aligned cubes whose side is a power of CELL_BASE, in the finest cells that rays tell apart. The
 // exponent is called a shift, because with CELL_BASE 2 it is one.
+//
+// The finest cells are the voxels of the finest level or, with MARK_SHIFT, parts of them: 2^MARK_SHIFT along
+// each axis. Lengths and places are in voxels of the finest level all the same.
+//
 // Needs the define CELL_BASE: 2 or 3.
+#ifndef MARK_SHIFT
+#define MARK_SHIFT 0
+#endif
+#define FINEST_LENGTH (1.0 / float(1 << MARK_SHIFT))
 #if CELL_BASE == 3
 
 // The side of a cell. Shifts must be under 20: 3^20 would pass 31 bits. No cell of a tree is larger than 3^13
@@ -30,7 +38,7 @@ ivec3 place_in(ivec3 voxel, int shift, int up) {
 #else
 
 int cell_side(int shift) { return 1 << shift; }
-// Number along each axis of the cell of that size that holds a voxel.
+// Number along each axis of the cell of that size that holds a finest cell.
 ivec3 cell_of(ivec3 voxel, int shift) { return voxel >> shift; }
 bool same_cell(ivec3 a, ivec3 b, int shift) {
     const ivec3 differ = a ^ b;
@@ -42,3 +50,7 @@ ivec3 cell_low(ivec3 voxel, int shift) { return (voxel >> shift) << shift; }
 ivec3 place_in(ivec3 voxel, int shift, int up) { return (voxel >> shift) & ((1 << up) - 1); }
 
 #endif
+
+// The side of a cell as a length, and the low corner of the finest cells.
+float cell_length(int shift) { return FINEST_LENGTH * float(cell_side(shift)); }
+vec3 corner_of(ivec3 finest) { return FINEST_LENGTH * vec3(finest); }

@@ -2,10 +2,12 @@
 #include "interop/march.h"
 #include "interop/tile_query.h"
 #include "interop/windows.h"
+#include "march/brick_words.glsl"
 
 // The brick that a ray is in.
 struct Place {
     int slot;         // -1: none
+    int brick;        // where the slot's masks are: brick_start()
     int tile_shift;   // log2 of the tile's side
     // Mip of the brick that is shown, or the finer of the two that are blended.
     int mip;
@@ -53,7 +55,8 @@ bool needs_coarser(Ray ray, Place place) {
 
 void use_brick(inout Place place, int slot) {
     place.slot = slot;
-    place.summary = texelFetch(brick_masks, slot * MASK_WORDS).xy;
+    place.brick = brick_start(slot);
+    place.summary = mask_word(place.brick, 0);
     touch(slot);
 }
 
@@ -103,10 +106,10 @@ bool shows(Ray ray, int tile_shift) {
 #if BLENDED
     return sees_mip(ray, tile_shift - M_SHIFT, 0);
 #else
-    const float voxel_side = float(cell_side(tile_shift - M_SHIFT));
+    const float voxel_side = cell_length(tile_shift - M_SHIFT);
 #if RAYS_WIDEN
-    const vec3 low = vec3(cell_low(ray.voxel, tile_shift)) - ray.origin;
-    const vec3 away = max(max(low, -(low + float(cell_side(tile_shift)))), vec3(0.0));
+    const vec3 low = corner_of(cell_low(ray.cell, tile_shift)) - ray.origin;
+    const vec3 away = max(max(low, -(low + cell_length(tile_shift))), vec3(0.0));
     return voxel_side <= ray.cone_base + ray.cone_slope * length(away);
 #else
     return voxel_side <= ray.cone_base;
@@ -136,6 +139,7 @@ int level_of_tile(Ray ray, int tile_shift) {
 Place no_place() {
     Place place;
     place.slot = -1;
+    place.brick = 0;
     place.tile_shift = ROOT_SHIFT;
     place.mip = 0;
 #if PROGRESSIVE
@@ -185,12 +189,12 @@ int descend(Ray ray, out Place place, out int empty_shift) {
     Ancestor ancestor = ancestor_of(uvec4(0u), 0u, ROOT_SHIFT);
 #endif
     for (int level = 0; level < MAX_LEVEL; ++level) {
-        if (place.tile_shift == M_SHIFT || shows(ray, place.tile_shift)) break;
+        if (place.tile_shift == TILE_SHIFT || shows(ray, place.tile_shift)) break;
 #if HAS_FINAL || TREE_N == 8
         if (is_final(node)) break;
 #endif
         leave_trail(ray, entry, node, place.tile_shift);
-        const ivec3 c = place_in(ray.voxel, place.tile_shift - N_SHIFT, N_SHIFT);
+        const ivec3 c = place_in(ray.cell, place.tile_shift - N_SHIFT, N_SHIFT);
         const int empty = empty_child_shift(node, c);
         if (empty >= 0) {
             empty_shift = place.tile_shift - N_SHIFT + empty;

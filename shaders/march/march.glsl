@@ -2,7 +2,7 @@
 //
 // A ray finds the tile that its cone asks for, marches the tile's brick, and looks for the next tile behind
 // it (Crassin et al. 2008, section 5.1), in one of several ways (TRAVERSAL; descend.glsl). Progress is by
-// integer steps: every step moves one coordinate of `voxel` by at least one in the ray's direction, so no
+// integer steps: every step moves one coordinate of `cell` by at least one in the ray's direction, so no
 // epsilon is needed and no ray can stall.
 //
 // With PROGRESSIVE, for frames with a deadline, rays also query the bricks of the nodes that they pass,
@@ -16,8 +16,8 @@
 //
 // Needs the defines of TreeShape::defines() (with WINDOWS, for trees whose voxels a ray cannot count,
 // MAX_LEVEL is the depth under a window's tiles) and of renderer/march/march_programs.h; and of the includer
-// RAYS_WIDEN, whether cone_slope is other than 0, and VISIT_TURNS, the most loop turns of visit(), which a
-// pass counts (TURN_BUDGET).
+// RAYS_WIDEN, whether cone_slope is other than 0; VISIT_TURNS, the most loop turns of visit(), which a pass
+// counts (TURN_BUDGET); and FIRST_MARK_ENDS, whether a ray ends at the first mark that it meets.
 #include "interop/march.h"
 #include "march/buffers.glsl"
 #include "march/tree_cells.glsl"
@@ -29,28 +29,53 @@ bool leave_window(Ray ray) { return false; }  // there is one cube, the root
 bool enter_windows(inout Ray ray) { return enter_root(ray); }
 #endif
 
+// Most loop turns in the marks of a voxel.
+#define MARK_TURNS (MARKS != 0 ? 10 : 0)
+
 #define MARCH_DONE 0
 #define MARCH_MISSING 1
 
-// An occupied voxel that a ray crosses.
+// What a ray meets: an occupied voxel or, with MARKS, a mark in one.
 struct Sample {
+#if PACKED
+    int brick;            // first word of the brick
+#else
     ivec3 texel;          // first texel of the brick's mip, border included
+#endif
+#if MARKS
+    bool is_mark;
+#endif
     int mip;              // mip of the brick
     ivec3 voxel;          // place in the mip, [0, MIP_M(mip))
     vec3 middle;          // middle of the chord, in voxels of the mip, [0, MIP_M(mip)]
-    vec3 centre;          // centre of the voxel, from the root cube's low corner
+    vec3 centre;          // centre of what is met, from the root cube's low corner
     float t;              // distance of the chord's middle
-    float side;           // side of the voxel
+    float side;           // side of what is met
+    float voxel_side;
     float share;          // weight in the blend with the other mip, (0, 1]
 };
 
-// Takes one occupied voxel; false ends the ray.
+// Takes what a ray meets; false ends the ray.
 bool visit(inout Ray ray, Sample s);
+
+#if MARKS
+// Does the ray meet the marks of an occupied voxel of this side? Else it meets the voxel as a whole, by its
+// coverage.
+bool meets_marks(Ray ray, float voxel_side);
+
+// What visit() took counted: it was not passed over as the receiver's own.
+bool is_counted = true;
+
+#if FIRST_MARK_ENDS
+// Does the ray pass over a mark that it meets at this distance? `corner`: the mark's low corner.
+bool passes_over(Ray ray, vec3 corner, float side, float t);
+#endif
+#endif
 
 #if HAS_CONSTANT
 // A constant tile that a ray crosses, as a number of equal voxels.
 struct ConstantRun {
-    vec4 mean;        // the value, as a texel of brick_color
+    vec4 mean;        // the value, as a texel of a dense brick's colour
     float t_in;       // distance where the ray enters the tile
     float t_out;      // distance where the ray leaves the tile, or ends
     int voxel_shift;  // log2 of a voxel's side
@@ -79,10 +104,53 @@ bool cross_constant(inout Ray ray, Place place, inout int turns) {
     const bool goes_on = step_over(ray, place.tile_shift);
     run.t_out = min(ray.t, ray.t_end);
     // A step from voxel to voxel changes one coordinate by one.
-    const ivec3 steps = abs(cell_of(ray.voxel, run.voxel_shift) - cell_of(entered.voxel, run.voxel_shift));
+    const ivec3 steps = abs(cell_of(ray.cell, run.voxel_shift) - cell_of(entered.cell, run.voxel_shift));
     run.voxels = min(steps.x + steps.y + steps.z, 3 * BRICK_M);
     turns += run.voxels;
     return visit_constant(entered, run) && (goes_on || leave_window(ray));
+}
+#endif
+
+#include "march/brick_texels.glsl"
+
+#if MARKS
+// Moves the ray, in an occupied voxel, to its next mark; false if it meets none there and has left the voxel.
+// `goes_on`: the ray has not come to its end. (Amanatides and Woo 1987, in the 4^3 cells of the voxel.)
+bool find_mark(inout Ray ray, Place place, int mip, out bool goes_on) {
+    const int voxel_shift = brick_voxel_shift_of(place) + mip;
+    const int mark_shift = voxel_shift - MARK_SHIFT;
+    const uvec2 marks = marks_of(place.brick, mip, place_in(ray.cell, voxel_shift, M_SHIFT - mip));
+    const ivec3 low = cell_low(ray.cell, voxel_shift);
+    const vec3 bound = corner_of(low + (cell_of(ray.cell - low, mark_shift) + ray.positive) * cell_side(mark_shift));
+    const vec3 step_t = mix(abs(ray.inverse) * cell_length(mark_shift), vec3(ENDLESS), ray.inert);
+    const ivec3 step_c = 2 * ray.positive - 1;
+    ivec3 c = cell_of(ray.cell - low, mark_shift);
+    vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(ENDLESS), ray.inert);  // where it leaves the cell
+    float t_in = ray.t;
+    bool found = false;
+    // A straight line crosses at most 10 of 4^3 cells.
+    for (int i = 0; i < 10; ++i) {
+        const float t_out = min(t.x, min(t.y, t.z));
+        found = has_bit(marks, c.x + 4 * c.y + 16 * c.z);
+#if FIRST_MARK_ENDS
+        if (found && passes_over(ray, corner_of(low + c * cell_side(mark_shift)), cell_length(mark_shift), 0.5 * (t_in + t_out)))
+            found = false;
+#endif
+        if (found) break;
+        t_in = t_out;
+        const bool x = t.x == t_in;
+        const bool y = !x && t.y == t_in;
+        const bvec3 crossed = bvec3(x, y, !x && !y);
+        c += mix(ivec3(0), step_c, crossed);
+        t += mix(vec3(0.0), step_t, crossed);
+        if (((c.x | c.y | c.z) & ~3) != 0) break;
+    }
+    ray.t = max(t_in, ray.t);
+    const ivec3 cell = low + c * cell_side(mark_shift);
+    ray.cell = clamp(finest_cell_at(ray.origin + ray.direction * ray.t), cell, cell + (cell_side(mark_shift) - 1));
+    const uvec3 place_now = uvec3(ray.cell);
+    goes_on = max(place_now.x, max(place_now.y, place_now.z)) < uint(MARCHED_SIDE) && ray.t < ray.t_end;
+    return found && goes_on;
 }
 #endif
 
@@ -90,7 +158,11 @@ bool cross_constant(inout Ray ray, Place place, inout int turns) {
 #define SEEK_DONE 1
 #define SEEK_MISSING 2
 
-// Moves the ray to its next occupied voxel: down the tree, over empty tiles, through bricks.
+// With blended mips the marks of both are looked at behind seek().
+#define SEEKS_MARKS (MARKS != 0 && BLENDED == 0)
+
+// Moves the ray to its next occupied voxel, or to its next mark: down the tree, over empty tiles, through
+// bricks.
 int seek(inout Ray ray, inout Place place, inout int turns) {
     for (;;) {
         int empty_shift = 0;
@@ -113,38 +185,69 @@ int seek(inout Ray ray, inout Place place, inout int turns) {
         if (place.slot < 0) {
             goes_on = step_over(ray, empty_shift);
         } else {
+            const ivec3 tile = cell_of(ray.cell, place.tile_shift);
             const int skimmed = skim(ray, place, turns);
+#if SEEKS_MARKS
+            if (skimmed == SKIM_OCCUPIED) {
+                turns += MARK_TURNS;
+                if (!meets_marks(ray, cell_length(brick_voxel_shift_of(place))) || find_mark(ray, place, 0, goes_on))
+                    return SEEK_OCCUPIED;
+                if (goes_on && all(equal(cell_of(ray.cell, place.tile_shift), tile))) continue;
+            }
+#else
             if (skimmed == SKIM_OCCUPIED) return SEEK_OCCUPIED;
-            goes_on = skimmed != SKIM_ENDED;
+#endif
+            goes_on = goes_on && skimmed != SKIM_ENDED;
             place.slot = -1;
         }
         if (!goes_on && !leave_window(ray)) return SEEK_DONE;
     }
 }
 
-// Takes the voxel of a mip around the ray's voxel, which must be occupied, and moves the ray behind it.
-// `goes_on`: the ray has not come to its end. The result is false if visit() has ended the ray.
+// Takes what the ray meets in a voxel of a mip, which must be occupied: the whole voxel, or a mark. Moves the
+// ray behind that. With blended mips the ray has yet to find a mark; if it meets none, it goes behind the
+// voxel. `goes_on`: the ray has not come to its end. The result is false if visit() has ended the ray.
 bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_on) {
     const int voxel_shift = brick_voxel_shift_of(place) + mip;
-    const ivec3 low = cell_low(ray.voxel, voxel_shift);
-    const ivec3 brick_low = cell_low(ray.voxel, brick_voxel_shift_of(place) + M_SHIFT);
-    const float side = float(cell_side(voxel_shift));
-    const float t_in = ray.t;
+    const ivec3 brick_low = cell_low(ray.cell, brick_voxel_shift_of(place) + M_SHIFT);
     Sample s;
+    s.voxel_side = cell_length(voxel_shift);
+    int met_shift = voxel_shift;
+#if MARKS
+    s.is_mark = meets_marks(ray, s.voxel_side);
+    if (s.is_mark) {
+#if !SEEKS_MARKS
+        if (!find_mark(ray, place, mip, goes_on)) return true;
+#endif
+        met_shift -= MARK_SHIFT;
+    }
+#endif
+    const ivec3 low = cell_low(ray.cell, met_shift);
+    const float t_in = ray.t;
+#if PACKED
+    s.brick = place.brick;
+#else
     s.texel = first_texel(place.slot, mip);
+#endif
     s.mip = mip;
     s.voxel = cell_of(low - brick_low, voxel_shift);
-    s.side = side;
+    s.side = cell_length(met_shift);
     s.share = share;
-    s.centre = vec3(low) + 0.5 * side;
-    goes_on = step_over(ray, voxel_shift);
+    s.centre = corner_of(low) + 0.5 * s.side;
+    goes_on = step_over(ray, met_shift);
     s.t = 0.5 * (t_in + ray.t);
-    s.middle = clamp((ray.origin + ray.direction * s.t - vec3(brick_low)) / side, vec3(0.0), vec3(float(MIP_M(mip))));
+    s.middle = clamp((ray.origin + ray.direction * s.t - corner_of(brick_low)) / s.voxel_side, vec3(0.0),
+                     vec3(float(MIP_M(mip))));
     return visit(ray, s);
 }
 
 #if BLENDED
 #include "march/blend.glsl"
+#endif
+
+#if SEEKS_MARKS && FIRST_MARK_ENDS
+// Takes the mark that the ray is in.
+void take_first_mark(inout Ray ray, Place place);
 #endif
 
 // Marches until the ray is done, or until it misses a tile or pauses; then the ray stands where it will
@@ -157,11 +260,17 @@ bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_
 int march(inout Ray ray, inout int turns) {
     Place place = no_place();
     forget_trail();
+#if SEEKS_MARKS && FIRST_MARK_ENDS
+    // All threads that run side by side take what they meet together.
+    const int met = seek(ray, place, turns);
+    if (met == SEEK_OCCUPIED) take_first_mark(ray, place);
+    return met == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
+#else
     for (;;) {
-        turns += (1 + VISIT_TURNS) * (BLENDED != 0 ? 5 : 1);
+        turns += (1 + VISIT_TURNS + MARK_TURNS) * (BLENDED != 0 ? 5 : 1);
         const int found = seek(ray, place, turns);
         if (found != SEEK_OCCUPIED) return found == SEEK_MISSING ? MARCH_MISSING : MARCH_DONE;
-        const ivec3 tile = cell_of(ray.voxel, place.tile_shift);
+        const ivec3 tile = cell_of(ray.cell, place.tile_shift);
         bool goes_on = true;
 #if BLENDED
         const bool seen_on = take_both(ray, place, goes_on);
@@ -172,13 +281,14 @@ int march(inout Ray ray, inout int turns) {
         if (!goes_on) {
             if (!leave_window(ray)) return MARCH_DONE;
             place.slot = -1;
-        } else if (any(notEqual(cell_of(ray.voxel, place.tile_shift), tile))) {
+        } else if (any(notEqual(cell_of(ray.cell, place.tile_shift), tile))) {
             place.slot = -1;
         }
 #if BLENDED
         if (place.slot >= 0 && needs_coarser(ray, place)) place.slot = -1;
 #endif
     }
+#endif
 }
 
 int march(inout Ray ray) {
@@ -186,5 +296,4 @@ int march(inout Ray ray) {
     return march(ray, turns);
 }
 
-#include "march/brick_texels.glsl"
 #include "march/ray_state.glsl"

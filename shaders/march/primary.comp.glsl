@@ -2,6 +2,7 @@
 #include "interop/march.h"
 #define RAYS_WIDEN 1
 #define VISIT_TURNS 0
+#define FIRST_MARK_ENDS 1
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #include "march/visible_normal.glsl"
@@ -11,7 +12,17 @@
 
 #include "march/launch.glsl"
 
+#if MARKS
+bool meets_marks(Ray ray, float voxel_side) { return true; }
+#if FIRST_MARK_ENDS
+bool passes_over(Ray ray, vec3 corner, float side, float t) { return false; }
+#endif
+#endif
+
 bool visit(inout Ray ray, Sample s) {
+#if MARKS
+    is_counted = true;
+#endif
 #if WITH_MESHES
     if (s.t > mesh.t) return false;
 #endif
@@ -20,7 +31,7 @@ bool visit(inout Ray ray, Sample s) {
     const Corners around = corners_around(s);
     vec3 color = view.surface_color;
 #if HAS_COLOR
-    const vec4 mean = filtered(brick_color, around);
+    const vec4 mean = filtered_color(s, around);
     color = mean.rgb / max(mean.a, LEAST_COVERAGE);
     color *= color;  // stored as square roots, whose steps look even to the eye
 #endif
@@ -40,6 +51,13 @@ bool visit(inout Ray ray, Sample s) {
     state.color.a = left;
     return state.color.a > OPAQUE_TRANSMITTANCE;
 }
+
+#if SEEKS_MARKS
+void take_first_mark(inout Ray ray, Place place) {
+    bool goes_on;
+    take_voxel(ray, place, 0, 1.0, goes_on);
+}
+#endif
 
 #if HAS_CONSTANT
 // Takes voxel by voxel, as if they stood in a brick, without normals.

@@ -29,7 +29,7 @@ void store_not_started(inout RayState state) {
 }
 
 void store_position(inout RayState state, Ray ray) {
-    state.place = pack_place(ray.voxel, ray.window);
+    state.place = pack_place(ray.cell, ray.window);
     state.distance = ray.t;
 }
 
@@ -40,7 +40,7 @@ void load_position(inout Ray ray, RayState state) {
     const uvec2 p = state.place;
     const int window = int(p.y >> 19 & 63u);
     while (ray.window < window) coarsen(ray);
-    ray.voxel = ivec3(p.x & 0x1FFFFu, p.x >> 17 | (p.y & 3u) << 15, p.y >> 2 & 0x1FFFFu);
+    ray.cell = ivec3(p.x & 0x1FFFFu, p.x >> 17 | (p.y & 3u) << 15, p.y >> 2 & 0x1FFFFu);
     ray.t = state.distance;
     seen_window = stored_seen_window(state);
 }
@@ -57,12 +57,12 @@ ivec3 unpack_voxel(uvec2 p) {
 void store_not_started(inout RayState state) { state.place = uvec2(0u, RAY_NOT_STARTED); }
 
 void store_position(inout RayState state, Ray ray) {
-    state.place = pack_voxel(ray.voxel);
+    state.place = pack_voxel(ray.cell);
     state.distance = ray.t;
 }
 
 void load_position(inout Ray ray, RayState state) {
-    ray.voxel = unpack_voxel(state.place);
+    ray.cell = unpack_voxel(state.place);
     ray.t = state.distance;
 }
 #endif

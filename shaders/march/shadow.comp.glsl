@@ -2,6 +2,8 @@
 // the light.
 #define RAYS_WIDEN SHADOW_CONES
 #define VISIT_TURNS 0
+// Where only the place of a mark tells whether it is the receiver's own.
+#define FIRST_MARK_ENDS (WITH_MESHES == 0 && SOFT_SHADOWS == 0)
 #include "interop/march.h"
 #include "interop/shadow_rays.h"
 #include "march/march.glsl"
@@ -14,6 +16,9 @@
 #define USES_SURFACE_PLANE (WITH_MESHES || SOFT_SHADOWS)
 #if USES_SURFACE_PLANE
 #include "march/surface_plane.glsl"
+// Whether the plane of a voxel's surface decides too if a ray meets it: for rays from meshes, and to all of a
+// light. A hard shadow on voxels does not depend on whether there are meshes.
+bool plane_decides = SOFT_SHADOWS != 0;
 #endif
 #include "march/shadow_pass.glsl"
 
@@ -22,20 +27,22 @@ layout(binding = TEXTURE_SHADOW_ENDS) uniform samplerBuffer shadow_ends;
 float receiver_width;  // of the rays that start at the receiver
 // Side of the voxels that the receiver is shown with; of the finer ones, if two mips are blended.
 float receiver_voxel_side;
+// Side of what rays meet there: of those voxels, or of their marks.
+float receiver_side() { return FINEST_LENGTH * receiver_voxel_side; }
 
-#define SELF_SHADOW_HEIGHT 1.75  // in sides of the receiver's voxels
+#define SELF_SHADOW_HEIGHT 1.75  // in sides of what is met at the receiver
 
-// Is this voxel part of the receiver's surface?
+// Is this voxel, or mark, part of the receiver's surface?
 bool is_receiver_voxel(Ray ray, vec3 centre, float t, float side) {
     float height = self_shadow_height;
     float reach = self_shadow_reach;
-    float receiver_side = receiver_voxel_side;
+    float own_side = receiver_side();
 #if WINDOWS
     // Side of the receiver's voxels, in units of the ray's.
     const float scale = ldexp(1.0, N_SHIFT * (seen_window - ray.window));
     height *= scale;
     reach *= scale;
-    receiver_side *= scale;
+    own_side *= scale;
     const vec3 from_receiver = centre - ray.origin;
 #else
     const vec3 from_receiver = centre - receiver;
@@ -43,8 +50,8 @@ bool is_receiver_voxel(Ray ray, vec3 centre, float t, float side) {
 #if BLENDED || RAYS_WIDEN
     // Voxels that stand in for missing ones, the coarser of two mips, and what a cone sees further on, are
     // larger than the receiver's voxels.
-    if (side > receiver_side && self_shadow_reach > 0.0) {
-        height *= side / receiver_side;
+    if (side > own_side && self_shadow_reach > 0.0) {
+        height *= side / own_side;
         reach = max(reach, self_shadow_reach_of(side));
     }
 #elif PROGRESSIVE
@@ -71,9 +78,40 @@ bool is_coarse(Ray ray, float side) {
 }
 #endif
 
-bool visit(inout Ray ray, Sample s) {
+#if MARKS && FIRST_MARK_ENDS
+bool passes_over(Ray ray, vec3 corner, float side, float t) {
+    return is_receiver_voxel(ray, corner + 0.5 * side, t, side);
+}
+#endif
+#if SEEKS_MARKS && FIRST_MARK_ENDS
+void take_first_mark(inout Ray ray, Place place) { visibility = 0.0; }
+#endif
+
+// Goes on behind what casts no shadow on the receiver.
+bool pass_over() {
+#if MARKS
+    is_counted = false;
+#endif
+    return true;
+}
+
+#if MARKS
+// Cones that have grown see the mean surface in a voxel.
+bool meets_marks(Ray ray, float voxel_side) {
 #if SHADOW_CONES
-    if (is_coarse(ray, s.side)) {
+    return !is_coarse(ray, voxel_side);
+#else
+    return true;
+#endif
+}
+#endif
+
+bool visit(inout Ray ray, Sample s) {
+#if MARKS
+    is_counted = true;
+#endif
+#if SHADOW_CONES
+    if (is_coarse(ray, s.voxel_side)) {
         if (!is_receiver_voxel(ray, s.centre, s.t, s.side)) take_coarse(ray, s);
         return visibility * left_by_sums() > OPAQUE_TRANSMITTANCE;
     }
@@ -84,9 +122,10 @@ bool visit(inout Ray ray, Sample s) {
 #else
     const float near = self_shadow_reach;
 #endif
-    if (passes_by(ray, s, near)) return true;
+    if (plane_decides && passes_by(ray, s, near)) return pass_over();
 #endif
-    if (!is_receiver_voxel(ray, s.centre, s.t, s.side)) visibility = behind(visibility, coverage_of(s), s.share);
+    if (is_receiver_voxel(ray, s.centre, s.t, s.side)) return pass_over();
+    visibility = behind(visibility, coverage_of(s), s.share);
     return visibility > OPAQUE_TRANSMITTANCE;
 }
 
@@ -97,10 +136,10 @@ bool visit_constant(Ray entered, ConstantRun run) {
 #else
     const float coverage = run.mean.r;
 #endif
-    const float side = float(cell_side(run.voxel_shift));
+    const float side = cell_length(run.voxel_shift);
     for (int voxel = 0; voxel < run.voxels && visibility > OPAQUE_TRANSMITTANCE; ++voxel) {
         const float t_in = entered.t;
-        const vec3 centre = vec3(cell_low(entered.voxel, run.voxel_shift)) + 0.5 * side;
+        const vec3 centre = corner_of(cell_low(entered.cell, run.voxel_shift)) + 0.5 * side;
         const bool goes_on = step_over(entered, run.voxel_shift);
         if (!is_receiver_voxel(entered, centre, 0.5 * (t_in + entered.t), side)) {
             visibility = behind(visibility, coverage, 1.0);
@@ -141,12 +180,12 @@ bool trace_one(LightSample there, bool starts) {
 #else
     const float widening = 0.0;
 #endif
-    look_to_light(there.direction, receiver_voxel_side);
+    look_to_light(there.direction, receiver_side());
     Ray ray = make_ray(receiver, there.direction, there.reach, receiver_width, widening);
 #if WINDOWS
     ray.window = seen_window;
 #endif
-    if (!march_to_light(ray, self_shadow_end(receiver_voxel_side), starts)) return false;
+    if (!march_to_light(ray, self_shadow_end(receiver_side()), starts)) return false;
 #if SHADOW_CONES
     visibility *= left_by_sums();
 #endif
@@ -161,7 +200,7 @@ void place_receiver(PixelRay seen, float depth, vec3 normal) {
     receiver_normal = normal;
     receiver_width = width_at(seen, depth);
     receiver_voxel_side = side_shown(receiver_width);
-    self_shadow_height = SELF_SHADOW_HEIGHT * receiver_voxel_side;
+    self_shadow_height = SELF_SHADOW_HEIGHT * receiver_side();
 }
 
 #if WITH_MESHES
@@ -173,9 +212,10 @@ void main() {
     const MeshPixel mesh = mesh_pixel(waiting.pixel);
     const float light_on_voxels_before = kept_light_on_voxels(waiting.index);
     const bool at_mesh = light_on_voxels_before >= 0.0;
+    plane_decides = plane_decides || at_mesh;
     if (at_mesh) {
         place_receiver(seen, mesh.t, mesh.plane);
-        self_shadow_height = mesh_self_shadow_height * receiver_voxel_side;  // the place of a mesh is exact
+        self_shadow_height = mesh_self_shadow_height * receiver_side();  // the place of a mesh is exact
     } else {
         place_receiver(seen, state.depth, facing_normal(state, seen.direction));
     }

@@ -14,16 +14,12 @@ float back_sum;   // of surfaces that face the light
 // The share of the light that the coarser voxels let through.
 float left_by_sums() { return max(1.0 - max(front_sum, back_sum), 0.0); }
 
-// The share of the column through texel p's voxel, along the ray, that its surface covers. x: surface that
+// The share of the column through a voxel of the sample's mip, along the ray, that its surface covers. x: surface that
 // faces the receiver; y: surface that faces the light. `along`: component of the direction across the layer.
-vec2 covered_across(ivec3 p, vec3 direction, float along) {
-    const vec4 texel = texelFetch(brick_color, p, 0);
-#if HAS_COLOR
-    const float coverage = texel.a;
-#else
-    const float coverage = texel.r;
-#endif
-    const vec3 normal = mean_normal(texelFetch(brick_normal, p, 0));
+vec2 covered_across(Sample s, ivec3 v, vec3 direction, float along) {
+    const VoxelPlace place = voxel_place(s, v);
+    const float coverage = color_at(s, place).a;
+    const vec3 normal = mean_normal(normals_at(place));
     const float most = max(abs(normal.x), max(abs(normal.y), abs(normal.z)));
     if (most < LEAST_MEAN_NORMAL) return vec2(coverage);  // normals of opposite sides cancel out
     // Coverage is the area across the axis for which the area is greatest.
@@ -43,14 +39,14 @@ void take_coarse(Ray ray, Sample s) {
     if (max(abs(off.x), max(abs(off.y), abs(off.z))) > 0.5) return;
     const vec3 low = floor(off);
     const vec3 f = off - low;
-    const ivec3 p = s.texel + 1 + s.voxel + ivec3(low);
+    const ivec3 p = s.voxel + ivec3(low);
     const ivec3 u = along_x ? ivec3(0, 1, 0) : ivec3(1, 0, 0);
     const ivec3 v = along_x || along_y ? ivec3(0, 0, 1) : ivec3(0, 1, 0);
     const float along = dot(size, axis);
-    const vec2 at_low = mix(covered_across(p, ray.direction, along),
-                            covered_across(p + u, ray.direction, along), dot(f, vec3(u)));
-    const vec2 at_high = mix(covered_across(p + v, ray.direction, along),
-                             covered_across(p + u + v, ray.direction, along), dot(f, vec3(u)));
+    const vec2 at_low = mix(covered_across(s, p, ray.direction, along),
+                            covered_across(s, p + u, ray.direction, along), dot(f, vec3(u)));
+    const vec2 at_high = mix(covered_across(s, p + v, ray.direction, along),
+                             covered_across(s, p + u + v, ray.direction, along), dot(f, vec3(u)));
     const vec2 covered = s.share * mix(at_low, at_high, dot(f, vec3(v)));
     front_sum += covered.x;
     back_sum += covered.y;

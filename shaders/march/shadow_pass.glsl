@@ -65,11 +65,11 @@ float clear_opaque(float left) { return left > OPAQUE_TRANSMITTANCE ? left : 0.0
 // Side of the voxels that a cone of this width sees (descend()); of the finer ones, if two mips are blended.
 float side_shown(float width) {
     int shift = ROOT_SHIFT - M_SHIFT;
-    for (int level = 0; level < MAX_LEVEL && float(cell_side(shift)) > width; ++level) shift -= N_SHIFT;
+    for (int level = 0; level < MAX_LEVEL && cell_length(shift) > width; ++level) shift -= N_SHIFT;
 #if BLENDED
     shift += blended_mip(shift, width);
 #endif
-    return float(cell_side(shift));
+    return cell_length(shift);
 }
 
 // Width of the shadow rays that start at a depth of a pixel's ray.

@@ -10,8 +10,8 @@ int first_level = 0;  // tree level of the cube that descents start from
 
 // The tree level whose bricks have voxels of the sample's size; mips lie between two levels.
 float level_of(Sample s) {
-    const int shift = int(round(log2(s.side) / log2(float(CELL_BASE))));
-    return float(first_level) + float(ROOT_SHIFT - M_SHIFT - shift) / float(N_SHIFT);
+    const int shift = int(round(log2(s.voxel_side) / log2(float(CELL_BASE))));
+    return float(first_level) + float(ROOT_SHIFT - TILE_SHIFT - shift) / float(N_SHIFT);
 }
 
 // An axis whose part in the normal is at least this share of the greatest part: the surface runs along the

@@ -1,4 +1,5 @@
-// An estimate of the surface in a voxel: a plane across the mean normal, through the voxel's middle.
+// An estimate of the surface in a voxel: a plane across the mean normal, through the middle of the
+// voxel, or of the mark that is met.
 //
 // A voxel is up to a diagonal thicker than the surface in it. A ray that only grazes the voxel misses the
 // surface half of the time, but without this file meets the voxel's coverage every time: then the bends of a
@@ -18,7 +19,7 @@
 // from the receiver of such a voxel, in the ray's units.
 bool passes_by(Ray ray, Sample s, float reach) {
     if (s.t >= reach) return false;
-    const vec3 normal = mean_normal(texelFetch(brick_normal, s.texel + 1 + s.voxel, 0));
+    const vec3 normal = mean_normal(normals_at(voxel_place(s, s.voxel)));
     if (dot(normal, receiver_normal) < SELF_SHADOW_LEAST_COSINE) return false;
     const float half_chord = ray.t - s.t;
     const float middle = dot(ray.origin - s.centre, normal) + s.t * dot(ray.direction, normal);

@@ -8,22 +8,22 @@ uint trail_2;
 uint trail_3;
 int trail_count;
 int trail_shift;  // log2 of the side of the lowest node's tile
-ivec3 trail_voxel;
+ivec3 trail_cell;
 
 void forget_trail() {
     trail_0 = trail_1 = trail_2 = trail_3 = 0u;
     trail_count = 0;
     trail_shift = ROOT_SHIFT;
-    trail_voxel = ivec3(0);
+    trail_cell = ivec3(0);
 }
 
 // Takes the node where the descent begins off the stack. @return log2 of the side of its tile.
 int resume(Ray ray, out uint entry, out uvec4 node) {
     int up = 0;
-    up += same_cell(ray.voxel, trail_voxel, trail_shift) ? 0 : 1;
-    up += same_cell(ray.voxel, trail_voxel, trail_shift + N_SHIFT) ? 0 : 1;
-    up += same_cell(ray.voxel, trail_voxel, trail_shift + 2 * N_SHIFT) ? 0 : 1;
-    up += same_cell(ray.voxel, trail_voxel, trail_shift + 3 * N_SHIFT) ? 0 : 1;
+    up += same_cell(ray.cell, trail_cell, trail_shift) ? 0 : 1;
+    up += same_cell(ray.cell, trail_cell, trail_shift + N_SHIFT) ? 0 : 1;
+    up += same_cell(ray.cell, trail_cell, trail_shift + 2 * N_SHIFT) ? 0 : 1;
+    up += same_cell(ray.cell, trail_cell, trail_shift + 3 * N_SHIFT) ? 0 : 1;
 #if PROGRESSIVE
     if (stand_in) up = 4;  // an ancestor that stands in may be anywhere on the way down
 #endif
@@ -52,5 +52,5 @@ void leave_trail(Ray ray, uint entry, uvec4 node, int tile_shift) {
     trail_0 = entry;
     trail_count = min(trail_count + 1, 4);
     trail_shift = tile_shift;
-    trail_voxel = ray.voxel;
+    trail_cell = ray.cell;
 }

@@ -2,6 +2,16 @@
 // Needs the defines of TreeShape::defines(): N = 3 goes with M = 27 and 81, N = 2, 4 and 8 with powers of
 // two.
 #include "interop/pool.h"
+
+// Packed bricks keep marks: 4^3 finer cells of each voxel, of which rays meet those that are set. Voxels that
+// are cut in thirds have none that nest.
+#if PACKED && CELL_BASE == 2
+#define MARKS 1
+#define MARK_SHIFT MARK_BITS
+#else
+#define MARKS 0
+#define MARK_SHIFT 0
+#endif
 #include "march/cells.glsl"
 
 // A block is the cube of BLOCK_SIDE^3 voxels whose bits are one word of a brick's masks.
@@ -11,10 +21,12 @@
 #define BLOCK_SHIFT 2
 #endif
 
-#define ROOT_SHIFT (M_SHIFT + N_SHIFT * MAX_LEVEL)
+// The finest tile's side, and the root's.
+#define TILE_SHIFT (M_SHIFT + MARK_SHIFT)
+#define ROOT_SHIFT (TILE_SHIFT + N_SHIFT * MAX_LEVEL)
 #define ROOT_SIDE cell_side(ROOT_SHIFT)
 
-// Side of the cube that rays march. With windows, it consists of 2^3 cubes from which descents start
+// Side, in finest cells, of the cube that rays march. With windows, it consists of 2^3 cubes from which descents start
 // (windows.glsl); else it is the root.
 #if WINDOWS
 #define MARCHED_SIDE (2 * ROOT_SIDE)

@@ -17,9 +17,9 @@ struct Faces {
     float spread;  // sum of 1 - cosine between the two normals of each texel
 };
 
-void add_faces(inout Faces faces, vec4 texel, float weight, vec3 direction) {
-    const Normals n = unpack_normals(texel);
-    const float there = has_normal(texel) ? weight : 0.0;
+void add_faces(inout Faces faces, uint bits, float weight, vec3 direction) {
+    const Normals n = unpack_normals(bits);
+    const float there = has_normal(bits) ? weight : 0.0;
     const vec3 first = there * (1.0 - n.share) * n.first;
     const vec3 second = there * n.share * n.second;
     faces.seen += max(-dot(n.first, direction), 0.0) * first + max(-dot(n.second, direction), 0.0) * second;
@@ -29,10 +29,10 @@ void add_faces(inout Faces faces, vec4 texel, float weight, vec3 direction) {
 
 Faces filtered_faces(Corners c, vec3 direction) {
     Faces faces = Faces(vec3(0.0), vec3(0.0), 0.0);
-    add_faces(faces, texelFetch(brick_normal, c.low, 0), c.weights.x, direction);
-    add_faces(faces, texelFetch(brick_normal, c.next, 0), c.weights.y, direction);
-    add_faces(faces, texelFetch(brick_normal, c.far, 0), c.weights.z, direction);
-    add_faces(faces, texelFetch(brick_normal, c.low + 1, 0), c.weights.w, direction);
+    add_faces(faces, normals_at(c.low), c.weights.x, direction);
+    add_faces(faces, normals_at(c.next), c.weights.y, direction);
+    add_faces(faces, normals_at(c.far), c.weights.z, direction);
+    add_faces(faces, normals_at(c.high), c.weights.w, direction);
     return faces;
 }
 

@@ -2,6 +2,7 @@
 #include "interop/march.h"
 #define RAYS_WIDEN 1
 #define VISIT_TURNS VOLUME_STEPS
+#define FIRST_MARK_ENDS 0
 #include "march/march.glsl"
 #include "march/shade.glsl"
 #include "march/volume.glsl"

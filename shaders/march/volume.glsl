@@ -77,7 +77,7 @@ Chord chord_of(Ray ray, Sample s) {
     chord.from = s.t - ray.t;
     chord.step = max(min(ray.t, ray.t_end) - s.t - chord.from, 0.0) / float(VOLUME_STEPS);
     chord.middle = s.middle - (vec3(s.voxel) + 0.5);
-    chord.direction = ray.direction / s.side;
+    chord.direction = ray.direction / s.voxel_side;
     return chord;
 }
 

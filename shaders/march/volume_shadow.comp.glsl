@@ -2,6 +2,7 @@
 // ray noted to the light.
 #define RAYS_WIDEN 0
 #define VISIT_TURNS VOLUME_STEPS
+#define FIRST_MARK_ENDS 0
 #include "interop/march.h"
 #include "march/march.glsl"
 #include "march/shade.glsl"

@@ -20,13 +20,13 @@ int seen_window = 0;
 
 // The window's tile around the ray: its entry, or WINDOW_*.
 uint window_tile(Ray ray) {
-    const ivec3 tile = cell_of(ray.voxel, ROOT_SHIFT);
+    const ivec3 tile = cell_of(ray.cell, ROOT_SHIFT);
     return windows.of[ray.window].tiles[tile.z][tile.x + 2 * tile.y];
 }
 
 // Rank of a query for the window's tile around the ray.
 int window_rank(Ray ray) {
-    const ivec3 tile = cell_of(ray.voxel, ROOT_SHIFT);
+    const ivec3 tile = cell_of(ray.cell, ROOT_SHIFT);
     return QUERY_RANK_WINDOWS + 8 * ray.window + tile.x + 2 * (tile.y + 2 * tile.z);
 }
 
@@ -37,7 +37,7 @@ void coarsen(inout Ray ray) {
     ++ray.window;
     // The eye of each window is more exact than a conversion, which rounds in each window.
     ray.origin = ray.from_eye ? windows.of[ray.window].eye : ray.origin * scale + vec3(shift);
-    ray.voxel = cell_of(ray.voxel, N_SHIFT) + shift;
+    ray.cell = cell_of(ray.cell, N_SHIFT) + shift;
     ray.t *= scale;
     ray.t_end *= scale;
     ray.cone_base *= scale;
@@ -49,7 +49,7 @@ bool leave_window(inout Ray ray) {
     if (ray.t >= ray.t_end) return false;
     while (ray.window + 1 < windows.count.x) {
         coarsen(ray);
-        if (all(greaterThanEqual(ray.voxel, ivec3(0))) && all(lessThan(ray.voxel, ivec3(MARCHED_SIDE)))) return true;
+        if (all(greaterThanEqual(ray.cell, ivec3(0))) && all(lessThan(ray.cell, ivec3(MARCHED_SIDE)))) return true;
     }
     return false;
 }

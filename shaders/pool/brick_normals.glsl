@@ -1,5 +1,6 @@
-// A texel of brick_normal (10 + 10 + 10 + 2 bits): two unit normals of the voxel's surface, by the octahedral
-// map (Cigolle et al. 2014), and the share of the second one, at most a half.
+// The normals of a voxel in 32 bits: two unit normals of its surface, by the octahedral map (Cigolle et al.
+// 2014), and the share of the second one, at most a half. Dense bricks keep them in texels of 10 + 10 + 10 + 2
+// bits.
 //     bits 0 to 17   first normal: 9 + 9 bits, values from 1 on; 0: no normal
 //     bits 18 to 29  second normal: 6 + 6 bits
 //     bits 30 to 31  share of the second normal, in sixths
@@ -20,31 +21,37 @@ vec3 from_octahedral_place(vec2 e) {
     return normalize(vec3(e - max(-z, 0.0) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(e, vec2(0.0))), z));
 }
 
-vec4 pack_normals(Normals n) {
+uint pack_normals(Normals n) {
     const uvec2 first = uvec2(round(octahedral_place(n.first) * 255.0 + 256.0));
     const uvec2 second = uvec2(round(octahedral_place(n.second) * 31.0 + 31.0));
-    const uint bits = first.x | first.y << 9 | second.x << 18 | second.y << 24;
-    return vec4(vec3(bits & 1023u, bits >> 10 & 1023u, bits >> 20) / 1023.0, round(6.0 * n.share) / 3.0);
+    return first.x | first.y << 9 | second.x << 18 | second.y << 24 | uint(round(6.0 * n.share)) << 30;
 }
 
-vec4 pack_normal(vec3 n) { return pack_normals(Normals(n, n, 0.0)); }
+uint pack_normal(vec3 n) { return pack_normals(Normals(n, n, 0.0)); }
 
-bool has_normal(vec4 texel) { return texel.x + texel.y > 0.0; }
+// As a texel of a dense brick, and back.
+vec4 normal_texel(uint bits) {
+    return vec4(vec3(bits & 1023u, bits >> 10 & 1023u, bits >> 20 & 1023u) / 1023.0, float(bits >> 30) / 3.0);
+}
+uint normal_bits(vec4 texel) {
+    const uvec4 t = uvec4(texel * vec4(1023.0, 1023.0, 1023.0, 3.0) + 0.5);
+    return t.x | t.y << 10 | t.z << 20 | t.w << 30;
+}
 
-Normals unpack_normals(vec4 texel) {
-    const uvec3 t = uvec3(texel.xyz * 1023.0 + 0.5);
-    const uint bits = t.x | t.y << 10 | t.z << 20;
+bool has_normal(uint bits) { return (bits & 0x3FFFFu) != 0u; }
+
+Normals unpack_normals(uint bits) {
     Normals n;
     n.first = from_octahedral_place((vec2(bits & 511u, bits >> 9 & 511u) - 256.0) / 255.0);
-    n.second = from_octahedral_place((vec2(bits >> 18 & 63u, bits >> 24) - 31.0) / 31.0);
-    n.share = 0.5 * texel.w;
+    n.second = from_octahedral_place((vec2(bits >> 18 & 63u, bits >> 24 & 63u) - 31.0) / 31.0);
+    n.share = float(bits >> 30) / 6.0;
     return n;
 }
 
 // Mean normal of the voxel's whole surface: short if its sides face different ways, 0 if there is none.
-vec3 mean_normal(vec4 texel) {
-    const Normals n = unpack_normals(texel);
-    return has_normal(texel) ? mix(n.first, n.second, n.share) : vec3(0.0);
+vec3 mean_normal(uint bits) {
+    const Normals n = unpack_normals(bits);
+    return has_normal(bits) ? mix(n.first, n.second, n.share) : vec3(0.0);
 }
 // A mean normal shorter than this is the rounding error of the normals of opposite sides, which cancel out.
 #define LEAST_MEAN_NORMAL 0.125

@@ -57,5 +57,5 @@ void main() {
     const float size = length(vec3(away));
     const ivec3 texel = tiles[tile].first_texel + place;
     imageStore(brick_color, texel, vec4(covered));
-    imageStore(brick_normal, texel, covered * size > 0.0 ? pack_normal(vec3(away)) : vec4(0.0));
+    imageStore(brick_normal, texel, covered * size > 0.0 ? normal_texel(pack_normal(vec3(away))) : vec4(0.0));
 }

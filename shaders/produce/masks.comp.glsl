@@ -3,23 +3,19 @@
 // if a finer voxel in it is; the samples of an alpha mask in the coarse voxel alone might miss that.
 #include "interop/produce.h"
 #include "produce/scratch.glsl"
-#include "pool/brick_masks.glsl"
+#include "produce/heads.glsl"
 #include "common/thread.glsl"
-
-layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
 
 uniform uint tile_count;
 uniform int mip;
 
 #if HAS_MASK && BRICK_MIPS > 0
 // Whether one of the 2^3 voxels of the next finer mip in voxel v is occupied.
-bool any_finer(uint slot, ivec3 v) {
+bool any_finer(uint tile, ivec3 v) {
     const int blocks = MIP_BLOCKS_PER_SIDE(mip - 1);
     const ivec3 c = 2 * v >> 2;
-    const uint word =
-        slot * uint(MASK_WORDS) + uint(first_mask_of(mip - 1) + c.x + blocks * (c.y + blocks * c.z));
     const ivec3 first = 2 * v & 3;
-    const uvec2 mask = brick_masks[word];
+    const uvec2 mask = head_mask(tile, first_mask_of(mip - 1) + c.x + blocks * (c.y + blocks * c.z));
     return ((first.z == 0 ? mask.x : mask.y) >> (first.x + 4 * first.y) & 0x00330033u) != 0u;
 }
 #endif
@@ -34,7 +30,6 @@ void main() {
     const ivec3 low = BLOCK_SIDE * ivec3(block % blocks_per_side, block / blocks_per_side % blocks_per_side,
                                          block / (blocks_per_side * blocks_per_side));
     const int side = min(BLOCK_SIDE, MIP_M(mip));
-    const uint slot = uint(tiles[tile].slot);
     uvec2 mask = uvec2(0u);
     for (int z = 0; z < side; ++z) {
         for (int y = 0; y < side; ++y) {
@@ -42,7 +37,7 @@ void main() {
                 const uint voxel = scratch_voxel(tile, mip, low + ivec3(x, y, z) + 1);
                 bool occupied = (scratch[2u * voxel] | scratch[2u * voxel + 1u]) != 0u;
 #if HAS_MASK && BRICK_MIPS > 0
-                if (mip > 0 && !occupied) occupied = any_finer(slot, low + ivec3(x, y, z));
+                if (mip > 0 && !occupied) occupied = any_finer(tile, low + ivec3(x, y, z));
 #endif
                 const uint bit = occupied ? 1u : 0u;
                 const int place = x + BLOCK_SIDE * (y + BLOCK_SIDE * z);
@@ -51,5 +46,5 @@ void main() {
             }
         }
     }
-    brick_masks[slot * uint(MASK_WORDS) + uint(first_mask_of(mip) + block)] = mask;
+    store_head_mask(tile, first_mask_of(mip) + block, mask);
 }

@@ -1,22 +1,16 @@
 // One thread is one summary word of a new brick: one bit for each of 64 blocks, whether a voxel of any mip is
-// occupied in it. With FINDS_EMPTY, for oracles that are not exact, it also marks tiles that are not empty.
+// occupied in it.
 #include "interop/produce.h"
 #include "produce/scratch.glsl"
-#include "pool/brick_masks.glsl"
+#include "produce/heads.glsl"
 #include "common/thread.glsl"
-
-layout(std430, binding = SSBO_BRICK_MASKS) buffer MaskBlock { uvec2 brick_masks[]; };
-
-#if FINDS_EMPTY
-layout(std430, binding = SSBO_BRICK_FOUND) buffer FoundBlock { uint found[]; };
-#endif
 
 uniform uint tile_count;
 
 // Whether a voxel of any mip is occupied in a block. Without alpha masks, the finest mip decides for all mips
 // whose voxels are no larger than a block.
-bool is_full(uint first, uint block) {
-    const uvec2 mask = brick_masks[first + uint(SUMMARY_WORDS) + block];
+bool is_full(uint tile, uint block) {
+    const uvec2 mask = head_mask(tile, SUMMARY_WORDS + int(block));
     bool full = (mask.x | mask.y) != 0u;
 #if BRICK_MIPS > 2 || HAS_MASK && BRICK_MIPS > 0
     // Occupied voxels of every mip lie in occupied voxels of the coarsest mip.
@@ -29,8 +23,8 @@ bool is_full(uint first, uint block) {
     for (int z = low.z; z <= high.z; ++z) {
         for (int y = low.y; y <= high.y; ++y) {
             for (int x = low.x; x <= high.x; ++x) {
-                const uvec2 word = brick_masks[first + uint(first_mask_of(BRICK_MIPS) + x / 4 +
-                                                            blocks * (y / 4 + blocks * (z / 4)))];
+                const uvec2 word =
+                    head_mask(tile, first_mask_of(BRICK_MIPS) + x / 4 + blocks * (y / 4 + blocks * (z / 4)));
                 full = full || ((z % 4 < 2 ? word.x : word.y) >> (x % 4 + 4 * (y % 4) + 16 * (z % 2)) & 1u) != 0u;
             }
         }
@@ -42,17 +36,13 @@ bool is_full(uint first, uint block) {
 void main() {
     const uint i = thread_index();
     if (i >= tile_count * uint(SUMMARY_WORDS)) return;
-    const uint slot = uint(tiles[i / uint(SUMMARY_WORDS)].slot);
+    const uint tile = i / uint(SUMMARY_WORDS);
     const uint word = i % uint(SUMMARY_WORDS);
-    const uint first = slot * uint(MASK_WORDS);
     uvec2 summary = uvec2(0u);
     for (uint bit = 0u; bit < 64u && word * 64u + bit < uint(BLOCKS); ++bit) {
-        const uint full = is_full(first, word * 64u + bit) ? 1u : 0u;
+        const uint full = is_full(tile, word * 64u + bit) ? 1u : 0u;
         if (bit < 32u) summary.x |= full << bit;
         else summary.y |= full << (bit - 32u);
     }
-    brick_masks[first + word] = summary;
-#if FINDS_EMPTY
-    if ((summary.x | summary.y) != 0u) atomicOr(found[i / uint(SUMMARY_WORDS)], 1u);
-#endif
+    store_head_mask(tile, int(word), summary);
 }

@@ -36,10 +36,10 @@ vec3 crossing_times(Ray ray, ivec3 planes) {
 }
 
 // The voxel where the ray is once it has crossed all planes before time t, and the planes at time t of the
-// axes in `tied`. It lies between ray.voxel and `last`.
+// axes in `tied`. It lies between ray.cell and `last`.
 ivec3 voxel_at(Ray ray, float t, bvec3 tied, ivec3 last) {
-    const ivec3 low = min(ray.voxel, last);
-    const ivec3 high = max(ray.voxel, last);
+    const ivec3 low = min(ray.cell, last);
+    const ivec3 high = max(ray.cell, last);
     const ivec3 guess = clamp(ivec3(floor(ray.origin + ray.direction * t)), low, high);
     // Rounding may have put the guess on the wrong side of a plane.
     const vec3 t_in = crossing_times(ray, guess + 1 - ray.positive);
@@ -48,7 +48,7 @@ ivec3 voxel_at(Ray ray, float t, bvec3 tied, ivec3 last) {
     const ivec3 ahead = ivec3(lessThan(t_out, at)) | (ivec3(equal(t_out, at)) & ivec3(tied));
     const ivec3 behind = ivec3(greaterThan(t_in, at)) | (ivec3(equal(t_in, at)) & ivec3(not(tied)));
     const ivec3 moved = guess + (2 * ray.positive - 1) * (ahead - behind);
-    return mix(clamp(moved, low, high), ray.voxel, ray.inert);
+    return mix(clamp(moved, low, high), ray.cell, ray.inert);
 }
 
 // The ray's way through the node of a level around its voxel.
@@ -67,7 +67,7 @@ Crossed cross_node(Ray ray, int level) {
 #else
     const ivec3 shift = ivec3(COLUMN_LEVELS, level, level);
 #endif
-    const ivec3 low = (ray.voxel >> shift) << shift;
+    const ivec3 low = (ray.cell >> shift) << shift;
     const ivec3 high = low + (ivec3(1) << shift) - 1;
     // The corner by which a ray would leave across all axes at once.
     const ivec3 corner = mix(low, high, equal(ray.positive, ivec3(1)));
@@ -89,7 +89,7 @@ Crossed cross_node(Ray ray, int level) {
     way.from = low.x;
     way.to = high.x;
 #else
-    way.from = ray.voxel.x;
+    way.from = ray.cell.x;
     way.to = way.last.x;
 #endif
     return way;
@@ -98,16 +98,16 @@ Crossed cross_node(Ray ray, int level) {
 // Moves the ray to the voxel behind the node, and finds the level of the largest node that begins there.
 // False if the ray has left the grid or come to its end.
 bool leave_node(inout Ray ray, Crossed way, out int level) {
-    const ivec3 before = ray.voxel;
-    ray.voxel = way.last;
+    const ivec3 before = ray.cell;
+    ray.cell = way.last;
     const ivec3 step = 2 * ray.positive - 1;
-    if (way.exit_axis == 0) ray.voxel.x += step.x;
-    if (way.exit_axis == 1) ray.voxel.y += step.y;
-    if (way.exit_axis == 2) ray.voxel.z += step.z;
+    if (way.exit_axis == 0) ray.cell.x += step.x;
+    if (way.exit_axis == 1) ray.cell.y += step.y;
+    if (way.exit_axis == 2) ray.cell.z += step.z;
     ray.t = way.t_exit;
-    const uvec3 place = uvec3(ray.voxel);
+    const uvec3 place = uvec3(ray.cell);
     if (max(place.x, max(place.y, place.z)) >= uint(COLUMN_SIDE) || ray.t >= ray.t_end) return false;
-    const ivec3 differ = before ^ ray.voxel;
+    const ivec3 differ = before ^ ray.cell;
 #if COLUMN_MASK == COLUMN_MASK_MIP_LEVEL
     level = findMSB(differ.x | differ.y | differ.z);
 #else
@@ -122,12 +122,12 @@ bool leave_node(inout Ray ray, Crossed way, out int level) {
 bool take_voxel(inout Ray ray, Crossed way, int x, out bool goes_on) {
     const vec3 t_in = crossing_times(ray, ivec3(x + 1 - ray.positive.x));
     const vec3 t_out = crossing_times(ray, ivec3(x + ray.positive.x));
-    const float t_enter = x == ray.voxel.x ? ray.t : t_in.x;
+    const float t_enter = x == ray.cell.x ? ray.t : t_in.x;
     const bool is_last = x == way.last.x;
     const float t_leave = is_last ? way.t_exit : t_out.x;
-    goes_on = visit_voxel(ivec3(x, ray.voxel.yz), 0.5 * (t_enter + t_leave));
+    goes_on = visit_voxel(ivec3(x, ray.cell.yz), 0.5 * (t_enter + t_leave));
     if (is_last) return false;
-    ray.voxel.x = x + 2 * ray.positive.x - 1;
+    ray.cell.x = x + 2 * ray.positive.x - 1;
     ray.t = t_leave;
     return true;
 }
@@ -137,16 +137,16 @@ bool take_voxel(inout Ray ray, Crossed way, int x, out bool goes_on) {
 bool trace_columns(inout Ray ray, inout int turns) {
     if (!enter_root(ray)) return false;
     // Moves the voxel to the side of each plane that the ray is on at this time.
-    const ivec3 entered = ray.voxel;
+    const ivec3 entered = ray.cell;
     const ivec3 step = 2 * ray.positive - 1;
-    ray.voxel = clamp(entered - step, ivec3(0), ivec3(COLUMN_SIDE - 1));
-    ray.voxel = mix(voxel_at(ray, ray.t, bvec3(true), clamp(entered + step, ivec3(0), ivec3(COLUMN_SIDE - 1))), entered,
+    ray.cell = clamp(entered - step, ivec3(0), ivec3(COLUMN_SIDE - 1));
+    ray.cell = mix(voxel_at(ray, ray.t, bvec3(true), clamp(entered + step, ivec3(0), ivec3(COLUMN_SIDE - 1))), entered,
                     ray.inert);
     int level = min(COLUMN_START_LEVEL, COLUMN_LEVELS);
     for (;;) {
         ++turns;
         const Crossed way = cross_node(ray, level);
-        const int found = first_occupied(column_at(level, ray.voxel.yz >> level), way.from, way.to, turns);
+        const int found = first_occupied(column_at(level, ray.cell.yz >> level), way.from, way.to, turns);
         if (found < 0) {
             if (!leave_node(ray, way, level)) return false;
         } else if (level > 0) {

@@ -12,6 +12,7 @@
 #include "voxelize/attribute_sums.glsl"
 #include "voxelize/surface.glsl"
 #define MEAN_FINENESS 2
+#define MEAN_MOST_TAPS 4  // parts are small, and a thread takes many
 #include "voxelize/surface_color.glsl"
 #include "common/thread.glsl"
 

@@ -75,7 +75,13 @@ TexelPair texel_pair(float coordinate, float width, uint size, uint mode) {
     return pair;
 }
 
+// What an alpha is multiplied by before it is compared with a cutoff, or with 1, for the sum of a point's
+// weights is rounded.
+#define ALPHA_SLACK 1.00001
+
+#ifndef MEAN_MOST_TAPS
 #define MEAN_MOST_TAPS 8  // boxes that a long footprint is cut in
+#endif
 
 // A mip level of a material's texture.
 struct MipLevel {
@@ -144,7 +150,7 @@ vec4 mean_texel(SurfaceMaterial material, vec2 uv, vec2 side_a, vec2 side_b, flo
     const float width = max(shorter / float(MEAN_FINENESS), longer / float(MEAN_MOST_TAPS));
     // Coarser levels know what passes for the highest vertex alpha alone.
     const bool masked = (material.flags >> MATERIAL_MASK_BIT & 1u) != 0u;
-    const MipLevel level = level_of_width(material, masked && vertex_alpha < 1.0 ? 0.0 : width);
+    const MipLevel level = level_of_width(material, masked && vertex_alpha * ALPHA_SLACK < 1.0 ? 0.0 : width);
     const float most = max(width, 1.0);
     const int long_taps = int(clamp(ceil(longer / most), 1.0, float(MEAN_MOST_TAPS)));
     const int short_taps = int(clamp(ceil(shorter / most), 1.0, float(MEAN_FINENESS)));
@@ -192,10 +198,6 @@ vec3 color_over(SurfacePoint p, Footprint footprint, SurfaceMaterial material) {
     const vec2 side_b = footprint.side_b.x * second + footprint.side_b.y * third;
     return color * texture_color(material, texcoord_at(p), side_a, side_b, vertex_color.a);
 }
-
-// What an alpha is multiplied by before it is compared with a cutoff, for the sum of a point's weights is
-// rounded, and an alpha that equals the cutoff passes.
-#define ALPHA_SLACK 1.00001
 
 float alpha_at(SurfacePoint p, SurfaceMaterial material) {
     float alpha = material.base_color.a * vertex_color_at(p).a;

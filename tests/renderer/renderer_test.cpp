@@ -102,13 +102,12 @@ TEST_P(TreeShapes, PictureFromManyBricksEqualsTheOneFromADenseGrid) {
 TEST_P(TreeShapes, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const scenes::Scene scene = ball_over_floor();
     const View view = finest_view(scene);
-    Settings options{.tree = {.n = GetParam().first, .m = GetParam().second, .max_resolution = 128}};
+    Settings options{.tree = {.n = GetParam().first, .m = GetParam().second, .max_resolution = 512}};
     Renderer roomy = make_renderer(scene, options);
     const renderer::Frame expected = roomy.render(view);
     const std::uint64_t needed = expected.statistics.bricks_resident;
 
-    const std::size_t side = std::size_t(options.tree.m) + 2;
-    options.pools.brick_bytes = 4 * side * side * side * 6;  // about four bricks
+    options.pools.brick_bytes = pool_for(expected.statistics, 0.1, options.tree, true);
     options.pools.node_bytes = 9 * 64 * 16;
     Renderer tight = make_renderer(scene, options);
     const renderer::Frame ours = tight.render(view);
@@ -145,7 +144,7 @@ TEST_F(RendererTest, ConvergedFrameProducesNothingAndRepeatsThePicture) {
 TEST_F(RendererTest, PictureDoesNotDependOnTheFramesBeforeIt) {
     const scenes::Scene scene = scenes::make_builtin("spheres");
     // The second view fills the whole pool.
-    const Settings options{.tree = {.max_resolution = 1024}, .pools = {.brick_bytes = 1U << 20U}};
+    const Settings options{.tree = {.max_resolution = 1024}, .pools = {.brick_bytes = 1U << 18U}};
     View near_view = finest_view(scene);
     near_view.detail.pixel_error = 1.0;
     View other = near_view;

@@ -66,7 +66,7 @@ glm::uvec2 BoxContent::child_mask(const Tile& tile) {
 }
 
 std::vector<renderer::ProducedTile> BoxContent::produce(std::span<const renderer::BrickRequest> requests,
-                                                        const BrickPool& pool) {
+                                                        BrickPool& pool) {
     std::vector<renderer::ProducedTile> out;
     const int side = shape_.m + 2;
     for (const auto& [tile, slot] : requests) {

@@ -38,7 +38,7 @@ public:
     [[nodiscard]] glm::uvec2 child_mask(const renderer::Tile& tile) override;
     [[nodiscard]] bool is_empty(const renderer::Tile& tile) override;
     std::vector<renderer::ProducedTile> produce(std::span<const renderer::BrickRequest> requests,
-                                                const renderer::BrickPool& pool) override;
+                                                renderer::BrickPool& pool) override;
 
     /// All tiles that were ever produced, in order.
     [[nodiscard]] const std::vector<renderer::Tile>& produced() const { return produced_; }

@@ -210,7 +210,23 @@ dvec3 visible_normal(const DenseVoxels& voxels, const ivec3& own, const dvec3& p
     return away > bend ? -normal : glm::normalize(normal - std::max(away, 0.0) * direction);
 }
 
+/// The first finer voxel that a ray meets: it is opaque. Its attributes are those of its voxel.
+Hit primary_ray_to_marks(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direction) {
+    Hit hit;
+    const int across = voxels.side * voxels.marks;
+    const double finer = voxels.marks;
+    cross_voxels(across, eye * finer, direction, 1e30, [&](const ivec3& v, double t_in, double t_out) {
+        if (!voxels.is_marked(v)) return true;
+        hit.depth = 0.5 * (t_in + t_out) / finer;
+        hit.normal = visible_normal(voxels, v / voxels.marks, eye + direction * hit.depth, direction);
+        hit.transmittance = 0.0;
+        return false;
+    });
+    return hit;
+}
+
 Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direction) {
+    if (voxels.marks > 1) return primary_ray_to_marks(voxels, eye, direction);
     Hit hit;
     cross_voxels(voxels.side, eye, direction, 1e30, [&](const ivec3& v, double t_in, double t_out) {
         const double coverage = voxels.coverage[voxels.index(v)];
@@ -233,15 +249,20 @@ Hit primary_ray(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direct
 double shadow_ray(const DenseVoxels& voxels, const dvec3& receiver, const dvec3& normal,
                   const dvec3& direction, double reach) {
     double visibility = 1.0;
+    // Lengths are in sides of what rays meet.
+    const double finer = voxels.marks;
     const double self_shadow_reach = std::clamp(2.5 / std::max(glm::dot(normal, direction), 1e-3), 8.0, 64.0);
-    cross_voxels(voxels.side, receiver, direction, reach, [&](const ivec3& v, double t_in, double t_out) {
-        const double coverage = voxels.coverage[voxels.index(v)];
-        const bool own =
-            0.5 * (t_in + t_out) < self_shadow_reach && glm::dot(dvec3(v) + 0.5 - receiver, normal) < 1.75;
-        if (coverage == 0.0 || own) return true;
-        visibility = behind(visibility, coverage);
-        return visibility > OPAQUE_TRANSMITTANCE;
-    });
+    cross_voxels(voxels.side * voxels.marks, receiver * finer, direction, reach * finer,
+                 [&](const ivec3& v, double t_in, double t_out) {
+                     const double coverage = voxels.marks == 1     ? voxels.coverage[voxels.index(v)]
+                                             : voxels.is_marked(v) ? 1.0
+                                                                   : 0.0;
+                     const bool own = 0.5 * (t_in + t_out) < self_shadow_reach &&
+                                      glm::dot(dvec3(v) + 0.5 - receiver * finer, normal) < 1.75;
+                     if (coverage == 0.0 || own) return true;
+                     visibility = behind(visibility, coverage);
+                     return visibility > OPAQUE_TRANSMITTANCE;
+                 });
     return visibility > OPAQUE_TRANSMITTANCE ? visibility : 0.0;
 }
 
@@ -252,7 +273,7 @@ double srgb(double c) {
 
 }  // namespace
 
-DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution) {
+DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution, bool has_marks) {
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     DenseVoxels out;
     out.side = resolution;
@@ -273,6 +294,18 @@ DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution) {
         const double coverage = coverage_of(g);
         out.coverage.push_back(coverage);
         out.normals.push_back(two_normals(g));
+    }
+    out.marks = has_marks ? 4 : 1;
+    if (!has_marks) return out;
+    const int across = 4 * resolution;
+    out.marked.resize(std::size_t(across) * std::size_t(across) * std::size_t(across));
+    for (int z = 0; z < across; ++z) {
+        for (int y = 0; y < across; ++y) {
+            for (int x = 0; x < across; ++x) {
+                const Gathered& g = all[out.index(ivec3(x, y, z) / 4)];
+                out.marked[out.mark_index({x, y, z})] = g.fine[x % 4][y % 4][z % 4];
+            }
+        }
     }
     return out;
 }

@@ -24,6 +24,9 @@ struct TwoNormals {
 struct DenseVoxels {
     voxelizer::Grid grid;
     int side = 0;
+    /// Finer voxels along each axis of a voxel, which rays meet in its place: 4, or 1 if N = 3.
+    int marks = 4;
+    std::vector<bool> marked;      ///< (side * marks)^3 finer voxels; empty if marks = 1
     std::vector<double> coverage;  ///< coverage in [0, 1]
     std::vector<TwoNormals> normals;
 
@@ -31,11 +34,17 @@ struct DenseVoxels {
         return (std::size_t(v.z) * std::size_t(side) + std::size_t(v.y)) * std::size_t(side) +
                std::size_t(v.x);
     }
+    [[nodiscard]] std::size_t mark_index(const glm::ivec3& v) const {
+        const auto across = std::size_t(side) * std::size_t(marks);
+        return (std::size_t(v.z) * across + std::size_t(v.y)) * across + std::size_t(v.x);
+    }
+    [[nodiscard]] bool is_marked(const glm::ivec3& v) const { return marked[mark_index(v)]; }
 };
 
 /// Makes the voxels of a white scene with flat normals from exact voxels (by the reference) of each triangle
 /// alone, four times finer.
-[[nodiscard]] DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution);
+/// @param has_marks  whether rays meet the finer voxels.
+[[nodiscard]] DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution, bool has_marks = true);
 
 /// Marches the dense grid at its own resolution, whatever the distance.
 [[nodiscard]] optics::Image march_dense(const DenseVoxels& voxels, const renderer::View& view);

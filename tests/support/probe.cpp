@@ -45,11 +45,11 @@ void main() {
 #if WINDOWS
         while (ray.window < probes[i].voxel_window.w) coarsen(ray);
 #endif
-        ray.voxel = probes[i].voxel_window.xyz;
+        ray.cell = probes[i].voxel_window.xyz;
         ray.t = probes[i].origin_t.w;
     }
     const int end = inside ? march(ray) : MARCH_DONE;
-    probes[i].voxel_window.xyz = end == MARCH_MISSING ? ray.voxel : seen.xyz;
+    probes[i].voxel_window.xyz = end == MARCH_MISSING ? ray.cell : seen.xyz;
     probes[i].origin_t.w = ray.t;
 #if WINDOWS
     probes[i].voxel_window.w = ray.window;
@@ -67,6 +67,7 @@ gl::Program build(const renderer::TreeShape& shape) {
         defines.push_back(define);
     defines.emplace_back("RAYS_WIDEN", "0");
     defines.emplace_back("VISIT_TURNS", "0");
+    defines.emplace_back("FIRST_MARK_ENDS", "0");
     return build_on_march(defines, probe_shader);
 }
 

@@ -1,6 +1,12 @@
 #include "tests/support/produced_brick.h"
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <utility>
+
+#include <gtest/gtest.h>
 
 #include "renderer/produce/tile_lists.h"
 #include "shaders/interop/pool.h"
@@ -114,8 +120,171 @@ bool ProducedBrick::summary_at(const glm::ivec3& block) const {
     return (masks[bit / 64] >> (bit % 64) & 1U) != 0;
 }
 
+namespace {
+
+/// A packed brick, decoded without the shaders' functions.
+class PackedBrick {
+public:
+    PackedBrick(const BrickPool& pool, const renderer::TreeShape& shape, int slot)
+        : shape_(shape), has_color_(pool.has_color()) {
+        const renderer::PackedBricks::Run run = pool.packed()->run(slot);
+        words_ = pool.packed()->words().read_all<std::uint32_t>(run.words, std::size_t(run.first) * 4);
+    }
+
+    [[nodiscard]] std::uint64_t mask(int word) const {
+        const std::size_t at = 2 * std::size_t(word);
+        return words_[at] | std::uint64_t(words_[at + 1]) << 32U;
+    }
+
+    struct Voxel {
+        bool occupied = false;
+        std::uint32_t normal = 0;
+        std::uint32_t color = 0;  ///< RGBA8; without colours, coverage in the highest byte
+        std::uint64_t marks = 0;
+    };
+    [[nodiscard]] Voxel voxel(int mip, const glm::ivec3& place) const {
+        const auto [group, bit] = bit_of(mip, place);
+        const std::uint64_t occupied = mask(shape_.summary_words() + group);
+        if ((occupied >> unsigned(bit) & 1U) == 0) return {};
+        const int ranks = 2 * (shape_.summary_words() + shape_.groups());
+        const std::size_t record =
+            words_[std::size_t(ranks + group)] +
+            std::size_t(std::popcount(occupied & ((std::uint64_t(1) << unsigned(bit)) - 1)));
+        const std::size_t at = std::size_t(shape_.head_words()) + record * (has_color_ ? 2 : 1);
+        Voxel found{true, words_.at(at), has_color_ ? words_.at(at + 1) : 0, 0};
+        if (has_color_ && group >= shape_.inner_groups()) return found;
+        const std::size_t marks = words_[std::size_t(ranks + shape_.groups())] + 2 * record;
+        found.marks = words_.at(marks) | std::uint64_t(words_.at(marks + 1)) << 32U;
+        if (!has_color_) found.color = std::uint32_t(std::lround(coverage(found.marks) * 255.0)) << 24U;
+        return found;
+    }
+
+private:
+    /// The greatest share of the 4^2 rows along an axis that have a mark.
+    static double coverage(std::uint64_t marks) {
+        int most = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            std::array<bool, 16> rows{};
+            for (int i = 0; i < 64; ++i) {
+                const std::array<int, 3> p = {i % 4, i / 4 % 4, i / 16};
+                if ((marks >> unsigned(i) & 1U) != 0)
+                    rows[std::size_t(p[std::size_t((axis + 1) % 3)] + 4 * p[std::size_t((axis + 2) % 3)])] =
+                        true;
+            }
+            most = std::max(most, int(std::ranges::count(rows, true)));
+        }
+        return most / 16.0;
+    }
+    /// Group and bit: the border's voxels are counted in order of their places.
+    [[nodiscard]] std::pair<int, int> bit_of(int mip, const glm::ivec3& place) const {
+        const int m = shape_.m >> mip;
+        int first = 0;
+        const bool in_border = glm::any(glm::lessThan(place, glm::ivec3(0))) ||
+                               glm::any(glm::greaterThanEqual(place, glm::ivec3(m)));
+        if (!in_border) {
+            for (int k = 0; k < mip; ++k)
+                first += shape_.blocks(k);
+            const int side = shape_.block_side();
+            const int across = std::max(m / side, 1);
+            const glm::ivec3 block = place / side;
+            const glm::ivec3 bit = place % side;
+            return {first + block.x + across * (block.y + across * block.z),
+                    bit.x + side * (bit.y + side * bit.z)};
+        }
+        first = shape_.inner_groups();
+        for (int k = 0; k < mip; ++k)
+            first += (shape_.border_voxels(k) + 63) / 64;
+        if (border_numbers_[std::size_t(mip)].empty()) number_border(mip);
+        const int number = border_numbers_[std::size_t(mip)].at(
+            std::size_t(place.x + 1 + (m + 2) * (place.y + 1 + (m + 2) * (place.z + 1))));
+        return {first + number / 64, number % 64};
+    }
+    /// Numbers the border as packed_brick.glsl says: whole layers below and above, then whole rows before and
+    /// behind, layer by layer, then the rest.
+    void number_border(int mip) const {
+        const int m = shape_.m >> mip;
+        const auto at_end = [m](int p) { return p < 0 || p == m; };
+        std::vector<int>& numbers = border_numbers_[std::size_t(mip)];
+        numbers.assign(std::size_t(m + 2) * std::size_t(m + 2) * std::size_t(m + 2), -1);
+        int next = 0;
+        const auto number = [&](int x, int y, int z) {
+            numbers[std::size_t(x + 1 + (m + 2) * (y + 1 + (m + 2) * (z + 1)))] = next++;
+        };
+        for (const int z : {-1, m})
+            for (int y = -1; y <= m; ++y)
+                for (int x = -1; x <= m; ++x)
+                    number(x, y, z);
+        for (int z = 0; z < m; ++z)
+            for (const int y : {-1, m})
+                for (int x = -1; x <= m; ++x)
+                    number(x, y, z);
+        for (int z = 0; z < m; ++z)
+            for (int y = 0; y < m; ++y)
+                for (int x = -1; x <= m; ++x)
+                    if (at_end(x)) number(x, y, z);
+    }
+
+    renderer::TreeShape shape_;
+    bool has_color_;
+    std::vector<std::uint32_t> words_;
+    mutable std::array<std::vector<int>, 4> border_numbers_;
+};
+
+ProducedMip read_packed_mip(const BrickPool& pool, const renderer::TreeShape& shape, int slot, int mip) {
+    ProducedMip out;
+    out.side = shape.mip_side(mip);
+    if (pool.packed()->run(slot).words == 0) {  // empty
+        const std::size_t voxels = volume(glm::ivec3(out.side));
+        out.color.assign(voxels, 0);
+        out.normal.assign(voxels, 0);
+        out.marks.assign(voxels, 0);
+        out.occupied.assign(volume(glm::ivec3(out.side - 2)), false);
+        return out;
+    }
+    const PackedBrick brick(pool, shape, slot);
+    const int m = out.side - 2;
+    for (int i = 0; i < out.side * out.side * out.side; ++i) {
+        const glm::ivec3 place =
+            glm::ivec3(i % out.side, i / out.side % out.side, i / (out.side * out.side)) - 1;
+        const PackedBrick::Voxel voxel = brick.voxel(mip, place);
+        out.color.push_back(voxel.color);
+        out.normal.push_back(voxel.normal);
+        out.marks.push_back(voxel.marks);
+        if (glm::all(glm::greaterThanEqual(place, glm::ivec3(0))) &&
+            glm::all(glm::lessThan(place, glm::ivec3(m))))
+            out.occupied.push_back(voxel.occupied);
+    }
+    return out;
+}
+
+ProducedBrick read_packed_brick(const BrickPool& pool, const renderer::TreeShape& shape, int slot) {
+    ProducedMip finest = read_packed_mip(pool, shape, slot, 0);
+    ProducedBrick brick{shape.m, std::move(finest.color), std::move(finest.normal), {}};
+    const PackedBrick packed(pool, shape, slot);
+    for (int word = 0; word < shape.mask_words(); ++word)
+        brick.masks.push_back(packed.mask(word));
+    return brick;
+}
+
+ProducedBrick empty_brick(const renderer::TreeShape& shape) {
+    const std::size_t voxels = volume(glm::ivec3(shape.m + 2));
+    return {shape.m, std::vector<std::uint32_t>(voxels, 0), std::vector<std::uint32_t>(voxels, 0),
+            std::vector<std::uint64_t>(std::size_t(shape.mask_words()), 0)};
+}
+
+}  // namespace
+
+ProducedMip read_mip(const BrickPool& pool, const renderer::TreeShape& shape, int slot, int mip) {
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    return read_packed_mip(pool, shape, slot, mip);
+}
+
 ProducedBrick read_brick(const BrickPool& pool, const renderer::TreeShape& shape, int slot) {
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    if (pool.packed() != nullptr) {
+        return pool.packed()->run(slot).words == 0 ? empty_brick(shape)
+                                                   : read_packed_brick(pool, shape, slot);
+    }
     ProducedBrick brick;
     brick.m = shape.m;
     const glm::ivec3 low = pool.first_texel(slot);
@@ -149,6 +318,10 @@ PoolTextures textures_of(const BrickPool& pool) {
 
 std::vector<std::uint8_t> slot_content(const BrickPool& pool, int slot) {
     std::vector<std::uint8_t> bytes;
+    if (const renderer::PackedBricks* const packed = pool.packed()) {
+        const renderer::PackedBricks::Run run = packed->run(slot);
+        return packed->words().read_all<std::uint8_t>(std::size_t(run.words) * 4, std::size_t(run.first) * 4);
+    }
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     for (const BrickPool::Layer& layer : pool.layers()) {
         const glm::ivec3 low = pool.first_texel(slot, layer.mip);
@@ -182,18 +355,21 @@ BrickMaker::BrickMaker(const renderer::TreeShape& shape, const voxelizer::Surfac
       surface_(upload(surface)),
       lists_(renderer::tile_lists(shape, surface)),
       producer_(shape, surface_, lists_, {}),
-      pool_(shape, surface.has_color, std::size_t(slots) * slot_bytes(shape.m, surface.has_color)) {}
+      pool_(shape, {.color = surface.has_color, .packed = true},
+            std::size_t(slots) * renderer::least_packed_bytes(shape, surface.has_color) + 4096) {}
 
 std::vector<ProducedBrick> BrickMaker::produce(const std::vector<renderer::Tile>& tiles) {
     std::vector<renderer::BrickRequest> requests;
     requests.reserve(tiles.size());
     for (const renderer::Tile& tile : tiles)
         requests.push_back({tile, int(requests.size())});
-    producer_.produce(requests, pool_);
+    const std::vector<renderer::ProducedTile> produced = producer_.produce(requests, pool_);
     std::vector<ProducedBrick> bricks;
     bricks.reserve(tiles.size());
-    for (const renderer::BrickRequest& request : requests)
-        bricks.push_back(read_brick(pool_, shape_, request.slot));
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        EXPECT_EQ(produced[i].words_without_room, 0U) << "no room for brick " << i;
+        bricks.push_back(produced[i].constant ? empty_brick(shape_) : read_brick(pool_, shape_, int(i)));
+    }
     return bricks;
 }
 

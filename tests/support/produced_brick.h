@@ -40,10 +40,32 @@ struct ProducedBrick {
     [[nodiscard]] bool operator==(const ProducedBrick&) const = default;
 };
 
+/// One mip of a slot.
+struct ProducedMip {
+    int side = 0;  ///< voxels per side, border included
+    std::vector<std::uint32_t> color;
+    std::vector<std::uint32_t> normal;
+    std::vector<bool> occupied;  ///< by the masks, without the border
+    /// The 4^3 finer voxels of each voxel, for the voxels whose marks a packed brick keeps; 0 for the others.
+    std::vector<std::uint64_t> marks;
+
+    /// Places run from -1.
+    [[nodiscard]] std::size_t index(const glm::ivec3& place) const {
+        const glm::ivec3 p = place + 1;
+        return std::size_t(p.x + side * (p.y + side * p.z));
+    }
+    [[nodiscard]] bool occupied_at(const glm::ivec3& place) const {
+        const int m = side - 2;
+        return occupied[std::size_t(place.x + m * (place.y + m * place.z))];
+    }
+};
+[[nodiscard]] ProducedMip read_mip(const renderer::BrickPool& pool, const renderer::TreeShape& shape,
+                                   int slot, int mip);
+
 [[nodiscard]] ProducedBrick read_brick(const renderer::BrickPool& pool, const renderer::TreeShape& shape,
                                        int slot);
 
-/// All bytes of a slot, layer by layer, then its masks.
+/// All bytes of a slot: layer by layer, then its masks; or the words of its packed brick.
 [[nodiscard]] std::vector<std::uint8_t> slot_content(const renderer::BrickPool& pool, int slot);
 
 /// Bytes of the driver's memory that the pool's stores take.
@@ -76,7 +98,7 @@ private:
     renderer::BrickPool pool_;
 };
 
-/// Bytes of one slot, as BrickPool counts them.
+/// Bytes of one slot of dense bricks, as BrickPool counts them.
 [[nodiscard]] std::size_t slot_bytes(int m, bool has_color);
 
 }  // namespace cairn::test

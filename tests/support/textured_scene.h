@@ -35,8 +35,7 @@ inline void paint_from_above(scenes::Scene& scene, scenes::Primitive& primitive,
     image.width = side;
     image.height = side;
     image.rgba = std::move(rgba);
-    scene.textures.push_back(
-        {int(scene.images.size()) - 1, scenes::Wrap::repeat, scenes::Wrap::repeat});
+    scene.textures.push_back({int(scene.images.size()) - 1, scenes::Wrap::repeat, scenes::Wrap::repeat});
     scenes::Material& material = scene.materials.emplace_back();
     material.texture = int(scene.textures.size()) - 1;
     material.alpha_mode = mode;

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
 #include "renderer/open_content.h"
+#include "renderer/pool/packed_bricks.h"
 #include "renderer/renderer.h"
 
 namespace cairn::test {
@@ -28,6 +31,13 @@ renderer::Renderer voxel_renderer(const Volume& volume, const renderer::Transfer
                                   const renderer::VolumeOptions& options = {}) {
     return renderer::Renderer(renderer::volume_content(volume, transfer, settings.tree, options),
                               settings.options());
+}
+
+/// Bytes of a pool for a share of the bricks that a frame left in its pool; for one full brick at least.
+inline std::size_t pool_for(const renderer::FrameStatistics& frame, double share,
+                            const renderer::TreeOptions& tree = {}, bool has_color = false) {
+    return std::max(std::size_t(share * double(frame.brick_bytes_resident)),
+                    renderer::least_packed_bytes(renderer::tree_shape_of(tree), has_color));
 }
 
 }  // namespace cairn::test

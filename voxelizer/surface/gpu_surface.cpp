@@ -27,6 +27,7 @@ GpuSurface upload(const Surface& surface) {
     out.texels = upload_array(surface.texels, "surface texels",
                               gl::query_limits().texture_buffer_texels * sizeof(surface.texels[0]));
     out.texel_texture = gl::buffer_texture(GL_R32UI, out.texels);
+    out.has_texture = !surface.texels.empty();
     out.has_color = surface.has_color;
     out.has_mask = surface.has_mask;
     return out;

@@ -75,7 +75,7 @@ struct Surface {
     /// Triangles that miss the root cube but lie before or behind it along an axis (SurfaceOptions::outside).
     std::vector<std::array<glm::i64vec3, 3>> outside_triangles;
     std::vector<interop::SurfaceMaterial> materials;  ///< at least one
-    /// RGBA8 texels of the images that are used, and the masks' counts of passing texels.
+    /// RGBA8 texels of the images that are used, their mip levels, and the masks' counts of passing texels.
     std::vector<std::uint32_t> texels;
     std::uint64_t triangle_count = 0;
     /// Whether the base colour varies: by textures, vertex colours, or factors that differ.
@@ -129,6 +129,7 @@ struct GpuSurface {
     gl::Buffer materials;
     gl::Buffer texels;
     gl::TextureHandle texel_texture;  ///< shaders read the texels through it
+    bool has_texture = false;
     bool has_color = false;
     bool has_mask = false;
 

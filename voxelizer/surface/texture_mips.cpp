@@ -33,7 +33,7 @@ std::uint32_t encoded(const Kept& kept) {
     if (!(kept.a > 0.0F)) return 0;
     const glm::uvec3 color(optics::srgb8_from_linear(glm::vec3(kept) / kept.a));
     const std::uint32_t alpha =
-        kept.a >= 1.0F - 1e-5F ? 255U : std::clamp(std::uint32_t(kept.a * 255.0F + 0.5F), 1U, 254U);
+        kept.a >= 1.0F - 1e-5F ? 255U : std::uint32_t(std::clamp(std::lround(kept.a * 255.0F), 1L, 254L));
     return color.r | color.g << 8U | color.b << 16U | alpha << 24U;
 }
 
@@ -103,13 +103,14 @@ std::vector<std::uint32_t> mips_of(std::span<const std::uint32_t> texels, const 
     for (glm::ivec2 level = size; level != glm::ivec2(1);) {
         const glm::ivec2 coarser = coarser_mip_size(level);
         const auto stride = std::size_t(level.x);
-        finer = finer.empty()
-                    ? halved(level, coarser,
-                             [&](int x, int y) {
-                                 return kept_of(texels[std::size_t(y) * stride + std::size_t(x)], lowest_alpha);
-                             })
-                    : halved(level, coarser,
-                             [&](int x, int y) { return finer[std::size_t(y) * stride + std::size_t(x)]; });
+        finer =
+            finer.empty()
+                ? halved(level, coarser,
+                         [&](int x, int y) {
+                             return kept_of(texels[std::size_t(y) * stride + std::size_t(x)], lowest_alpha);
+                         })
+                : halved(level, coarser,
+                         [&](int x, int y) { return finer[std::size_t(y) * stride + std::size_t(x)]; });
         for (const Kept& kept : finer)
             out.push_back(encoded(kept));
         level = coarser;
@@ -143,9 +144,9 @@ std::vector<std::uint32_t> filled_levels(std::span<const std::uint32_t> texels, 
                     out[level.first + std::size_t(y) * std::size_t(level.size.x) + std::size_t(x)];
                 if ((texel >> 24U) >= (i == 0 ? lowest_alpha : 1U)) continue;
                 const glm::ivec2 under = glm::min(glm::ivec2(x / 2, y / 2), coarser.size - 1);
-                const std::uint32_t color = out[coarser.first +
-                                                std::size_t(under.y) * std::size_t(coarser.size.x) +
-                                                std::size_t(under.x)];
+                const std::uint32_t color =
+                    out[coarser.first + std::size_t(under.y) * std::size_t(coarser.size.x) +
+                        std::size_t(under.x)];
                 texel = (texel & ~color_bits) | (color & color_bits);
             }
         }

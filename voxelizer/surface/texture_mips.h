@@ -26,8 +26,8 @@ namespace cairn::voxelizer {
 ///
 /// @param texels        RGBA8 in a word, red in the low bits; size.x * size.y of them.
 /// @param lowest_alpha  texels with a lower alpha (0 to 255) are left out; 0 keeps all.
-[[nodiscard]] std::vector<std::uint32_t> mips_of(std::span<const std::uint32_t> texels, const glm::ivec2& size,
-                                                 std::uint32_t lowest_alpha);
+[[nodiscard]] std::vector<std::uint32_t> mips_of(std::span<const std::uint32_t> texels,
+                                                 const glm::ivec2& size, std::uint32_t lowest_alpha);
 
 /// All levels, from level 0 on, for samplers that know nothing of masks: the texels that are left out have
 /// the colours of kept texels around them, taken from the finest level that has any there. Alphas of level 0

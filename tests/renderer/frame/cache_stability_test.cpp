@@ -58,11 +58,11 @@ protected:
     }
     static Tile tile(int i) { return {3, {i, 2 * i, 5}}; }
     /// Random bytes in all slots of the pool leave it and return, each to another slot.
-    static void expect_bricks_back(const BrickPool& pool);
+    static void expect_bricks_back(const renderer::TreeShape& shape, BrickPool pool);
 };
 
-void BrickCacheTest::expect_bricks_back(const BrickPool& pool) {
-    BrickCache cache(pool, std::size_t(1) << 20U);
+void BrickCacheTest::expect_bricks_back(const renderer::TreeShape& shape, BrickPool pool) {
+    BrickCache cache(shape, pool, std::size_t(1) << 20U);
     Random random(8);
     std::vector<std::vector<std::uint8_t>> bricks;
     std::vector<renderer::Tree::EvictedBrick> evicted;
@@ -77,44 +77,46 @@ void BrickCacheTest::expect_bricks_back(const BrickPool& pool) {
     const int last = pool.slot_count() - 1;
     for (int slot = 0; slot <= last; ++slot) {
         const std::vector<std::uint8_t> neighbour = slot_content(pool, slot);
-        ASSERT_TRUE(cache.restore(tile(slot), last - slot)) << "slot " << slot;
+        ASSERT_EQ(cache.restore(tile(slot), last - slot), BrickCache::Restored::yes) << "slot " << slot;
         EXPECT_EQ(slot_content(pool, last - slot), bricks[std::size_t(slot)]) << "slot " << slot;
         if (slot != last - slot) {
             EXPECT_EQ(slot_content(pool, slot), neighbour) << "it wrote past its slot";
         }
     }
-    EXPECT_FALSE(cache.restore(tile(1000), 0));
+    EXPECT_EQ(cache.restore(tile(1000), 0), BrickCache::Restored::not_cached);
     EXPECT_EQ(cache.counters().stored, bricks.size());
     EXPECT_EQ(cache.counters().restored, bricks.size());
 }
 
 TEST_P(BrickCacheTest, BrickComesBackBitForBitInAnotherSlot) {
-    const BrickPool pool(renderer::make_tree_shape(2, m, 64), GetParam(), 60 * slot_bytes(GetParam()));
-    expect_bricks_back(pool);
+    const renderer::TreeShape shape = renderer::make_tree_shape(2, m, 64);
+    expect_bricks_back(shape, BrickPool(shape, GetParam(), 60 * slot_bytes(GetParam())));
 }
 
 TEST_P(BrickCacheTest, BrickComesBackWithItsMips) {
     for (const int n : {2, 4, 8}) {
         SCOPED_TRACE(n);
         const renderer::TreeShape shape = renderer::make_tree_shape(n, m, 64, true);
-        expect_bricks_back(BrickPool(shape, GetParam(), 60 * slot_bytes(GetParam())));
+        expect_bricks_back(shape, BrickPool(shape, GetParam(), 60 * slot_bytes(GetParam())));
     }
 }
 
 TEST_P(BrickCacheTest, KeepsWithinItsBytesWhatWasUsedLast) {
-    const BrickPool pool(renderer::make_tree_shape(2, m, 64), GetParam(), 4 * slot_bytes(GetParam()));
+    const renderer::TreeShape shape = renderer::make_tree_shape(2, m, 64);
+    BrickPool pool(shape, GetParam(), 4 * slot_bytes(GetParam()));
     const std::size_t limit = 10 * (slot_bytes(GetParam()) + 200);
-    BrickCache cache(pool, limit);
+    BrickCache cache(shape, pool, limit);
     for (int i = 0; i < 100; ++i) {
         const renderer::Tree::EvictedBrick evicted{tile(i), 0};
         cache.store({&evicted, 1});
-        EXPECT_TRUE(cache.restore(tile(0), 1)) << "tile 0 is used all the time, " << i;
+        EXPECT_EQ(cache.restore(tile(0), 1), BrickCache::Restored::yes)
+            << "tile 0 is used all the time, " << i;
         EXPECT_LE(cache.size_bytes(), limit);
     }
-    EXPECT_TRUE(cache.restore(tile(99), 0));
-    EXPECT_FALSE(cache.restore(tile(1), 0)) << "not used for longest";
+    EXPECT_EQ(cache.restore(tile(99), 0), BrickCache::Restored::yes);
+    EXPECT_EQ(cache.restore(tile(1), 0), BrickCache::Restored::not_cached) << "not used for longest";
     EXPECT_GT(cache.size_bytes(), 8 * slot_bytes(GetParam()));
-    EXPECT_THROW(BrickCache(pool, 100), Error);
+    EXPECT_THROW(BrickCache(shape, pool, 100), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Color, BrickCacheTest, ::testing::Bool(),
@@ -140,13 +142,11 @@ protected:
         Renderer fresh = make();
         const renderer::Frame frame = fresh.render(view);
         Settings options;
-        options.pools.brick_bytes =
-            std::size_t(std::max(1.0, double(frame.statistics.bricks_produced) * share)) * slot_bytes;
+        options.pools.brick_bytes = pool_for(frame.statistics, share);
         options.pools.node_bytes = std::size_t(8) * 64 * 16;
         return options;
     }
 
-    static constexpr std::size_t slot_bytes = 18 * 18 * 18 * 5 + 65 * 8;  // the knot has one colour
     scenes::Scene scene_;
     scenes::Snapshot snapshot_;
     View view_;
@@ -170,8 +170,8 @@ TEST_F(CacheStability, PoolsOfATwentiethOfTheViewEndWithTheSamePicture) {
 }
 
 TEST_F(CacheStability, CachedBricksAreRestoredInsteadOfProduced) {
-    Settings options;
-    options.pools.brick_bytes = 40 * slot_bytes;
+    Settings options = share_of(0.2, view_);
+    options.pools.node_bytes = renderer::PoolSizes().node_bytes;
     options.pools.cache_bytes = std::size_t(256) << 20U;
     Renderer renderer = make(options);
     const renderer::Frame first = renderer.render(view_);
@@ -321,7 +321,7 @@ TEST_F(CacheStability, PrefetchTakesNothingFromTheFrameBeforeIt) {
     Settings options;
     Renderer fresh = make();
     const renderer::Frame frame = fresh.render(view_, {.budget = Milliseconds(1e9)});
-    options.pools.brick_bytes = (frame.statistics.bricks_resident + 30) * slot_bytes;
+    options.pools.brick_bytes = pool_for(frame.statistics, 1.3);
     Renderer renderer = make(options);
     const renderer::Frame before = renderer.render(view_, {.budget = Milliseconds(1e9)});
     ASSERT_TRUE(before.statistics.converged);
@@ -374,7 +374,7 @@ TEST_F(CacheStability, TenThousandFramesOfRandomFlightLeaveNothingBehind) {
     view.size.width = 16;
     view.size.height = 12;
     Settings options{.tree = {.max_resolution = 1024}};
-    options.pools.brick_bytes = 24 * slot_bytes;
+    options.pools.brick_bytes = std::size_t(128) << 10U;  // of the megabyte that a view needs
     options.pools.node_bytes = std::size_t(12) * 64 * 16;
     options.pools.cache_bytes = std::size_t(2) << 20U;
     Renderer renderer = voxel_renderer(scene, snapshot, options);

@@ -180,7 +180,9 @@ TEST_P(BlendedShapes, PictureDoesNotDependOnHowOftenRaysAreInterrupted) {
     const optics::Image expected = roomy.render(view).image;
     const renderer::Frame frame = roomy.render(view);
     EXPECT_EQ(frame.image.rgba, expected.rgba) << "one pass, no ray waits";
-    tree.pools.brick_bytes = frame.statistics.brick_pool_bytes / frame.statistics.brick_slots * 8;
+    renderer::TreeOptions with_mips = tree.tree;
+    with_mips.mips = true;
+    tree.pools.brick_bytes = pool_for(frame.statistics, 0.1, with_mips);
     tree.pools.node_bytes = std::size_t(12 * std::max(tree.tree.n * tree.tree.n * tree.tree.n, 64)) * 16;
     Renderer tight = make_renderer(scene, tree);
     const renderer::Frame tight_frame = tight.render(view);

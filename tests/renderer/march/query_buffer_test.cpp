@@ -97,6 +97,7 @@ protected:
                 defines.push_back(define);
             defines.emplace_back("RAYS_WIDEN", "0");
             defines.emplace_back("VISIT_TURNS", "0");
+            defines.emplace_back("FIRST_MARK_ENDS", "0");
             program = build_on_march(defines, asking_shader);
         }
         buffer.begin_frame({}, entries, slots);

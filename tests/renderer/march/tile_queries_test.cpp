@@ -122,7 +122,7 @@ struct Scenery {
                                         {.attributes = true});
     }
     [[nodiscard]] renderer::Marcher marcher(const renderer::MarchOptions& options) const {
-        return {shape_, cache_.content().has_color(), options, {}};
+        return {shape_, cache_.content().channels(), options, {}};
     }
     renderer::PassResult first_pass(renderer::Marcher& marcher) const {
         marcher.begin_frame(view_, cache_.tree(), cache_.pool(), false);
@@ -201,7 +201,6 @@ protected:
         options.march.tile_queries = TileQueries::blocks;
         return options;
     }
-    static constexpr std::size_t slot_bytes = 18 * 18 * 18 * 5 + 65 * 8;
     static constexpr std::size_t few_nodes = std::size_t(8) * 64 * 16;
 
     scenes::Scene scene_;
@@ -242,8 +241,7 @@ TEST_F(TileQueriesTest, BlocksSufficeForPoolsFarTooSmall) {
     const renderer::Frame expected = whole.render(view_);
     for (const double share : {0.3, 0.02}) {
         Settings options = with_blocks();
-        options.pools.brick_bytes =
-            std::size_t(double(expected.statistics.bricks_produced) * share) * slot_bytes;
+        options.pools.brick_bytes = pool_for(expected.statistics, share);
         options.pools.node_bytes = few_nodes;
         Renderer tight = make(options);
         const renderer::Frame frame = tight.render(view_);
@@ -291,12 +289,12 @@ TEST_F(TileQueriesTest, BlocksAndFewQueriesServeWindows) {
 }
 
 TEST_F(TileQueriesTest, FewQueriesAndFewNodesEndTogether) {
-    // One path of nodes from the root to a leaf and a block more, and three bricks.
+    // One path of nodes from the root to a leaf and a block more, and a few bricks.
     const Settings enough{.tree = {.n = 2, .m = 8, .max_resolution = 1024},
                           .pools = {.brick_bytes = 32U << 20U}};
     Settings few = enough;
     few.pools.node_bytes = std::size_t(9) * 8 * 16;
-    few.pools.brick_bytes = std::size_t(3) * (1000 * 5 + 9 * 8);
+    few.pools.brick_bytes = renderer::least_packed_bytes(renderer::tree_shape_of(few.tree), false);
     view_.size.width = 32;
     view_.size.height = 24;
     view_.detail.pixel_error = 0.5;

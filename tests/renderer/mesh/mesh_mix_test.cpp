@@ -107,7 +107,9 @@ TEST_F(MeshMix, VoxelsCoverAMeshBehindThemAsTheyCoverABackground) {
     view.shadow.kind = renderer::ShadowQuality::Kind::hard;
     view.light.ambient = 0.25F;
     view.light.towards = glm::normalize(glm::dvec3(1.0, 0.4, 0.05));  // shadows fall far to the left
-    Renderer renderer = voxels_of(ball, 128);
+    view.detail = {.kind = renderer::LevelOfDetail::Kind::blended, .pixel_error = 3.0};
+    Renderer renderer =
+        voxel_renderer(ball, scenes::take_snapshot(ball), {.tree = {.max_resolution = 128, .mips = true}});
     renderer.set_mix({.meshes = raster(wall), .mesh_shadows = true});
     const optics::Image with_wall = renderer.render(view).image;
     renderer.set_mix({});

@@ -25,7 +25,7 @@ protected:
 
 TEST_P(CpuBrickTest, HoldsWhatWasSetAndNothingElse) {
     const int m = GetParam();
-    const BrickPool pool(shape(), true, 8 * slot_bytes(m, true));
+    BrickPool pool(shape(), true, 8 * slot_bytes(m, true));
     CpuBrick brick(shape(), {.color = true});
     EXPECT_TRUE(brick.is_empty());
     const glm::ivec3 inside(m - 1, 1, m / 2);
@@ -61,7 +61,7 @@ class CpuBrickOfASolid : public GlTest {};
 
 TEST_F(CpuBrickOfASolid, WithoutAColourHoldsTheCoverage) {
     const TreeShape shape{.n = 4, .m = 8, .max_level = 1};
-    const BrickPool pool(shape, false, 8 * slot_bytes(8, false));
+    BrickPool pool(shape, false, 8 * slot_bytes(8, false));
     CpuBrick brick(shape, {.color = false});
     brick.set({0, 7, 3}, 1.0, {0.0F, 0.0F, 1.0F});
     brick.send_to(pool, 0);

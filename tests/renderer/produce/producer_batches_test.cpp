@@ -42,7 +42,7 @@ std::vector<BrickRequest> some_requests(const TreeShape& shape) {
 std::vector<std::vector<std::uint8_t>> bricks_of(Producer& producer, const TreeShape& shape,
                                                  Channels channels) {
     const std::vector<BrickRequest> requests = some_requests(shape);
-    const BrickPool pool(shape, channels, requests.size() * 2 * slot_bytes(shape.m, true));
+    BrickPool pool(shape, channels, requests.size() * 2 * slot_bytes(shape.m, true));
     (void)producer.produce(requests, pool);
     std::vector<std::vector<std::uint8_t>> bricks;
     for (const BrickRequest& request : requests)
@@ -61,7 +61,7 @@ TEST_F(ProducerBatches, OfAnySizeGiveTheSameBricksOfASurface) {
         const voxelizer::GpuSurface uploaded = upload(surface);
         voxelizer::TriangleIndex lists = tile_lists(shape, surface);
         SurfaceProducer producer(shape, uploaded, lists, {}, limits);
-        return bricks_of(producer, shape, {.color = surface.has_color});
+        return bricks_of(producer, shape, {.color = surface.has_color, .packed = true});
     };
     const auto truth = produced(voxelizer::surface_chunk_triangles, {});
     ASSERT_EQ(truth.size(), 17U);

@@ -134,8 +134,10 @@ TEST_P(ShapedBricks, HoldExactlyTheVoxelsThatClippingSays) {
         const std::int64_t side = shape().voxel_side(tiles[i].level);
         const BitGrid truth = true_voxels(triangles, low - std::int64_t(1), shape().m + 2, side);
         occupied += truth.count();
-        EXPECT_TRUE(same_bits(coverage_bits(bricks[i]), truth))
-            << "coverage, seeds 61 and 62, " << to_string(tiles[i]);
+        if (mask_bits(bricks[i]).count() != 0) {  // a brick whose border alone is occupied is not kept
+            EXPECT_TRUE(same_bits(coverage_bits(bricks[i]), truth))
+                << "coverage, seeds 61 and 62, " << to_string(tiles[i]);
+        }
         EXPECT_TRUE(same_bits(mask_bits(bricks[i]), without_border(truth)))
             << "masks, seeds 61 and 62, " << to_string(tiles[i]);
     }
@@ -156,7 +158,7 @@ TEST_P(InexactShapedBricks, TileIsToldConstantExactlyWhenItHoldsNothing) {
     std::vector<BrickRequest> requests;
     for (int i = 0; i < 12; ++i)
         requests.push_back({tile_near(random, shape(), triangles, std::min(2, shape().max_level)), i});
-    const BrickPool pool(shape(), false, 12 * slot_bytes(shape().m, false));
+    BrickPool pool(shape(), {.packed = true}, 24 * slot_bytes(shape().m, true));
     const std::vector<ProducedTile> produced = producer.produce(requests, pool);
     ASSERT_EQ(produced.size(), requests.size());
     int empty = 0;

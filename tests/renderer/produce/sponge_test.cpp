@@ -54,7 +54,7 @@ class SpongeBricks : public GlTest, public ::testing::WithParamInterface<int> {}
 TEST_P(SpongeBricks, HoldTheSetAndItsNeighbours) {
     const renderer::TreeShape shape = renderer::make_tree_shape(3, GetParam(), 1594323);
     renderer::FractalContent content(shape);
-    const renderer::BrickPool pool(shape, false, std::size_t(24) << 20U);
+    renderer::BrickPool pool(shape, false, std::size_t(24) << 20U);
     const std::int64_t deep = shape.tiles_across(shape.max_level) / 3;
     const std::vector<Tile> tiles = {{0, glm::i64vec3(0)},
                                      {1, glm::i64vec3(0, 0, 1)},

@@ -134,7 +134,7 @@ TransferFunction visible_from(int density) {
 }
 
 /// Whether the mask bit of any voxel of the tile's brick is set.
-bool shows(const Tile& tile, VolumeContent& content, const BrickPool& pool) {
+bool shows(const Tile& tile, VolumeContent& content, BrickPool& pool) {
     const BrickRequest request{tile, 0};
     (void)content.producer().produce({&request, 1}, pool);
     pool.bind_for_writing();
@@ -150,7 +150,7 @@ TEST_F(VolumeBricks, OfTilesThatTheOracleCallsEmptyAreEmptyAtAllLevelsBelow) {
         for (const Named& named : fields(n)) {
             const VolumeShape shape = make_volume_shape(named.field->frame(), n, 8, 256);
             VolumeContent content(shape, named.field, visible_from(60));
-            const BrickPool pool(shape.tree, content.channels(), 1U << 20U);
+            BrickPool pool(shape.tree, content.channels(), 1U << 20U);
             Numbers random(25);
             int empty = 0;
             int shown = 0;
@@ -183,7 +183,7 @@ TEST_F(VolumeBricks, OfOneValueAreCalledConstantAndHaveTheirMean) {
     const auto ball = std::make_shared<HollowSphere>(2, 128, 0.0, 0.5);
     const VolumeShape shape = make_volume_shape(ball->frame(), 2, 8, 128);
     VolumeContent content(shape, ball, visible_from(1));
-    const BrickPool pool(shape.tree, content.channels(), 1U << 20U);
+    BrickPool pool(shape.tree, content.channels(), 1U << 20U);
     const BrickRequest requests[] = {{{shape.tree.max_level, {8, 8, 8}}, 0},   // within
                                      {{shape.tree.max_level, {0, 0, 0}}, 1},   // outside
                                      {{shape.tree.max_level, {8, 8, 0}}, 2}};  // across its surface
@@ -200,7 +200,7 @@ TEST_F(VolumeBricks, OfOneValueAreCalledConstantAndHaveTheirMean) {
 
 TEST_F(VolumeBricks, HaveOneByteAVoxelAndNoNormals) {
     const TreeShape shape = make_tree_shape(4, 16, 256);
-    const BrickPool pool(shape, Channels{.color = false, .normal = false}, 10U << 20U);
+    BrickPool pool(shape, Channels{.color = false, .normal = false}, 10U << 20U);
     const std::size_t slot = 18 * 18 * 18 + 8 * pool.mask_words();
     EXPECT_EQ(pool.mask_words(), 65U);
     EXPECT_EQ(pool.size_bytes(), slot * std::size_t(pool.slot_count()));

@@ -136,9 +136,9 @@ TEST_F(PyramidPictures, AreAsNearToEmbreeAsThoseOfTheTree) {
                                                         {.standard_error = 1.0 / 256, .least_samples = 64})
                                      .shares;
         PyramidShadows pyramid({scene, snapshot}, {.resolution = 512});
-        // The same voxels.
+        // The marks of the tree's voxels are the pyramid's voxels.
         renderer::Renderer tree =
-            voxel_renderer(scene, snapshot, {.tree = {.n = 2, .m = 16, .max_resolution = 512}});
+            voxel_renderer(scene, snapshot, {.tree = {.n = 2, .m = 16, .max_resolution = 128}});
         tree.set_mix({.meshes = std::make_shared<renderer::MeshRaster>(scene, snapshot),
                       .mesh_shadows = true,
                       .meshes_are_voxelized = true,

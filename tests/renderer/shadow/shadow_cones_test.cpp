@@ -79,7 +79,7 @@ TEST_F(ShadowCones, PictureDependsOnTheViewAlone) {
     Renderer large = knot({.tree = {.max_resolution = 1024}});
     const optics::Image picture = large.render(view).image;
     Renderer small = knot({.tree = {.max_resolution = 1024},
-                           .pools = {.brick_bytes = 600U << 10U},
+                           .pools = {.brick_bytes = 100U << 10U},
                            .march = {.query_capacity = 50}});
     const renderer::Frame small_frame = small.render(view);
     EXPECT_EQ(small_frame.image.rgba, picture.rgba) << "a pool of few bricks";

@@ -196,7 +196,7 @@ TEST_F(ShadowRays, PictureDoesNotDependOnThePoolsNorOnRowsNorOnFramesBefore) {
     const renderer::Frame large_frame = large.render(view);
     EXPECT_EQ(large_frame.image.rgba, picture.rgba) << "a second frame";
     Renderer small = knot({.tree = {.max_resolution = 1024},
-                           .pools = {.brick_bytes = 600U << 10U},
+                           .pools = {.brick_bytes = 100U << 10U},
                            .march = {.query_capacity = 50}});
     const renderer::Frame small_frame = small.render(view);
     EXPECT_EQ(small_frame.image.rgba, picture.rgba) << "a pool of few bricks";

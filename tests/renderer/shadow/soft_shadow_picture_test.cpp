@@ -134,9 +134,11 @@ TEST_F(SoftShadowPictures, ShadowIsDarkerAndTheRestIsAsWithoutIt) {
 }
 
 /// A floor with a texture under a small occluder, seen at a low angle.
-ShadowPicture textured_floor(int side, std::vector<std::uint8_t> rgba, scenes::AlphaMode mode, float per_length) {
+ShadowPicture textured_floor(int side, std::vector<std::uint8_t> rgba, scenes::AlphaMode mode,
+                             float per_length) {
     ShadowScene scene(square({0.0, 0.8, 0.0}, 0.05), square({0.0, 0.0, 0.0}, 1.5));
-    paint_from_above(scene.scene, scene.scene.meshes[0].primitives[0], side, std::move(rgba), mode, per_length);
+    paint_from_above(scene.scene, scene.scene.meshes[0].primitives[0], side, std::move(rgba), mode,
+                     per_length);
     View view = view_of(light_above(3.0, 0.3, 0.3));
     view.light.ambient = 1.0F;  // every point of the floor is lit alike
     view.camera.eye = {1.0, 0.8, 2.5};
@@ -157,8 +159,8 @@ TEST_F(SoftShadowPictures, TexturesFinerThanPixelsAreMeans) {
 
 TEST_F(SoftShadowPictures, ColoursThatAMaskHidesAreNowhere) {
     for (const float per_length : {0.25F, 1.0F, 4.0F}) {
-        const ShadowPicture picture =
-            textured_floor(16, checkerboard(16, kept_green, hidden_magenta), scenes::AlphaMode::mask, per_length);
+        const ShadowPicture picture = textured_floor(16, checkerboard(16, kept_green, hidden_magenta),
+                                                     scenes::AlphaMode::mask, per_length);
         int seen = 0;
         for (std::size_t i = 0; i < picture.light.shares.size(); ++i) {
             if (picture.light.shares[i] < 0.0F) continue;

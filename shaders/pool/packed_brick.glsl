@@ -1,0 +1,100 @@
+// A packed brick (renderer/pool/packed_bricks.h): a head, and behind it a record for each occupied voxel, of
+// all mips, border included. Its 32-bit words are numbered from the brick's first one.
+//
+//     head      2 words for each 64-bit word of the masks: the summary and the mask blocks of all mips, as in
+//               brick_masks.glsl, then the borders of all mips, 64 voxels in a word (border_number())
+//               1 word for each mask block and each 64 voxels of a border: the number of the first record
+//               1 word: where the marks begin
+//     records   RECORD_WORDS for each occupied voxel, in the order of the masks' bits: its normals
+//               (brick_normals.glsl) and, with HAS_COLOR, its colour and coverage (RGBA8)
+//     marks     2 words for each of the first records: 4^3 finer voxels, bit x + 4 (y + 4 z). With HAS_COLOR
+//               those of the mask blocks have marks; else all have, for marks tell the coverage
+//
+// A group is a mask block, or 64 voxels of a border. Needs the define GROUPS, and those of brick_masks.glsl.
+#include "pool/brick_masks.glsl"
+
+#define HEAD_MASKS 0
+#define HEAD_RANKS (2 * (SUMMARY_WORDS + GROUPS))
+#define HEAD_MARKS (HEAD_RANKS + GROUPS)
+#define HEAD_WORDS (HEAD_MARKS + 1)
+#define INNER_GROUPS (MASK_WORDS - SUMMARY_WORDS)
+#if HAS_COLOR
+#define RECORD_WORDS 2
+#define MARKED_GROUPS INNER_GROUPS
+#else
+#define RECORD_WORDS 1
+#define MARKED_GROUPS GROUPS
+#endif
+
+#define BORDER_SIDE(mip) (MIP_M(mip) + 2)
+#define BORDER_VOXELS(mip) (CUBE(BORDER_SIDE(mip)) - CUBE(MIP_M(mip)))
+#define BORDER_GROUPS(mip) ((BORDER_VOXELS(mip) + 63) / 64)
+
+// Group of the first voxels of a mip's border.
+int first_border_group(int mip) {
+    int first = INNER_GROUPS;
+    for (int k = 0; k < mip; ++k) first += BORDER_GROUPS(k);
+    return first;
+}
+
+// Number of a voxel in its mip's border: the layers below and above, the rows before and behind, the rest.
+// `v`: place in the mip, [-1, MIP_M(mip)], with a coordinate at an end.
+int border_number(ivec3 v, int mip) {
+    const int m = MIP_M(mip);
+    const int side = m + 2;
+    const ivec3 end = ivec3(equal(v, ivec3(m)));
+    if (v.z < 0 || v.z == m) return end.z * side * side + (v.y + 1) * side + v.x + 1;
+    if (v.y < 0 || v.y == m) return 2 * side * side + v.z * 2 * side + end.y * side + v.x + 1;
+    return 2 * side * side + m * 2 * side + (v.z * m + v.y) * 2 + end.x;
+}
+
+// The voxel of a number in its mip's border.
+ivec3 border_voxel(int number, int mip) {
+    const int m = MIP_M(mip);
+    const int side = m + 2;
+    if (number < 2 * side * side) {
+        const int rest = number % (side * side);
+        return ivec3(rest % side - 1, rest / side - 1, number < side * side ? -1 : m);
+    }
+    number -= 2 * side * side;
+    if (number < 2 * side * m) {
+        const int rest = number % (2 * side);
+        return ivec3(rest % side - 1, rest < side ? -1 : m, number / (2 * side));
+    }
+    number -= 2 * side * m;
+    return ivec3(number % 2 == 0 ? -1 : m, number / 2 % m, number / 2 / m);
+}
+
+// Where the occupancy of a voxel is kept.
+struct GroupBit {
+    int group;
+    int bit;
+};
+
+// Of a voxel that is not in the border.
+GroupBit inner_group_bit(ivec3 v, int mip) {
+    const int blocks = MIP_BLOCKS_PER_SIDE(mip);
+#if BLOCK_SIDE == 4
+    const ivec3 c = v >> 2;
+#else
+    const ivec3 c = v / BLOCK_SIDE;
+#endif
+    const ivec3 place = v - BLOCK_SIDE * c;
+    return GroupBit(first_mask_of(mip) - SUMMARY_WORDS + c.x + blocks * (c.y + blocks * c.z),
+                    place.x + BLOCK_SIDE * (place.y + BLOCK_SIDE * place.z));
+}
+
+GroupBit group_bit(ivec3 v, int mip) {
+    const int m = MIP_M(mip);
+    if (all(greaterThanEqual(v, ivec3(0))) && all(lessThan(v, ivec3(m)))) return inner_group_bit(v, mip);
+    const int number = border_number(v, mip);
+    return GroupBit(first_border_group(mip) + number / 64, number % 64);
+}
+
+bool has_bit(uvec2 mask, int bit) { return ((bit < 32 ? mask.x : mask.y) >> (bit & 31) & 1u) != 0u; }
+
+// Number of bits below a bit.
+int bits_below(uvec2 mask, int bit) {
+    const uint below = (1u << (bit & 31)) - 1u;
+    return bit < 32 ? bitCount(mask.x & below) : bitCount(mask.x) + bitCount(mask.y & below);
+}
