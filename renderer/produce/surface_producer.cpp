@@ -15,11 +15,13 @@ namespace {
 /// Loop turns of a thread at most. A triangle that crosses a whole brick is cut in pieces, which threads
 /// share, because no thread may turn its loops too often (docs/decisions/house_and_scenes.md).
 constexpr int turns_per_pair = 30000;
-/// A voxel takes one turn itself and 16 for its rows; 64 more for an alpha mask; and for a texture up to 5
-/// means, each over the way to its mip level and the 4 texels of up to 8 boxes.
-constexpr int turns_of_voxel = 17;
+/// A voxel takes a turn itself, and at most one to find its row, two for the row's span and four for its
+/// bounds; 64 more for an alpha mask; and for a texture up to 5 means, each over the way to its mip level and
+/// the 4 texels of up to 8 boxes.
+constexpr int turns_of_voxel = 8;
 constexpr int turns_of_mask = 64;
 constexpr int turns_of_texture = 5 * (1 + 14 + 8 * 5);
+
 /// Voxels of all mips of a brick, border included.
 std::size_t voxels_per_brick(const TreeShape& shape) {
     std::size_t voxels = 0;
@@ -102,7 +104,7 @@ void SurfaceProducer::gather_pairs_of_mip(const Tile& tile, std::uint32_t number
     const int side = shape_.mip_side(mip);
     const int turns = turns_of_voxel + (surface_.has_mask ? turns_of_mask : 0) +
                       (surface_.has_color && surface_.has_texture ? turns_of_texture : 0);
-    const int rows = std::max(1, turns_per_pair / (side * turns));
+    const int rows = std::clamp(turns_per_pair / (side * turns), 1, PAIR_MOST_ROWS);
     const glm::ivec2 step(std::min(rows, side), std::max(1, rows / side));  // of y, of z
     const int voxel = shape_.voxel_side(tile.level) << mip;
     const glm::ivec3 low = glm::ivec3(tile.position) * (shape_.m >> mip) - 1;  // of the border
@@ -163,12 +165,12 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, Bric
     pack(requests.size(), pool);
 }
 
-void SurfaceProducer::dispatch(gl::Program& program, std::size_t tile_count,
-                               std::size_t threads_per_tile) const {
+void SurfaceProducer::dispatch(gl::Program& program, std::size_t tile_count, std::size_t threads) const {
+    if (threads == 0) return;
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     program.use();
     program.set("tile_count", unsigned(tile_count));
-    gl::dispatch_threads(tile_count * threads_per_tile, THREADS_PER_GROUP);
+    gl::dispatch_threads(threads, THREADS_PER_GROUP);
 }
 
 /// Makes the heads of the batch's bricks, and counts what they need.
@@ -179,11 +181,11 @@ void SurfaceProducer::number_records(std::size_t tile_count) {
     counts_.bind_storage(SSBO_BRICK_COUNTS);
     for (int mip = 0; mip <= shape_.mips; ++mip) {
         masks_.set("mip", mip);
-        dispatch(masks_, tile_count, std::size_t(shape_.blocks(mip)));
+        dispatch(masks_, tile_count, tile_count * std::size_t(shape_.blocks(mip)));
     }
-    dispatch(border_masks_, tile_count, std::size_t(shape_.groups() - shape_.inner_groups()));
-    dispatch(summarize_, tile_count, std::size_t(shape_.summary_words()));
-    dispatch(count_records_, tile_count, 1);
+    dispatch(border_masks_, tile_count, tile_count * std::size_t(shape_.groups() - shape_.inner_groups()));
+    dispatch(summarize_, tile_count, tile_count * std::size_t(shape_.summary_words()));
+    dispatch(count_records_, tile_count, tile_count);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
@@ -192,7 +194,10 @@ void SurfaceProducer::number_records(std::size_t tile_count) {
 void SurfaceProducer::find_room(std::span<const BrickRequest> requests, BrickPool& pool,
                                 std::span<ProducedTile> produced) {
     const auto counts = counts_.read_all<interop::PackedCount>(requests.size());
+    record_count_ = 0;
     for (std::size_t i = 0; i < requests.size(); ++i) {
+        batch_tiles_[i].first_record = std::uint32_t(record_count_);
+        record_count_ += counts[i].records;
         if (counts[i].words == 0) {
             produced[i].constant = true;
         } else if (pool.reserve(requests[i].slot, counts[i].words)) {
@@ -209,8 +214,9 @@ void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
     pool.bind_for_writing();
     // Rays of an earlier pass may still read what was there.
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    dispatch(store_heads_, tile_count, std::size_t(shape_.head_words()));
-    dispatch(resolve_, tile_count, voxels_per_brick(shape_));
+    dispatch(store_heads_, tile_count, tile_count * std::size_t(shape_.head_words()));
+    resolve_.set("record_count", unsigned(record_count_));
+    dispatch(resolve_, tile_count, record_count_);
     // The next batch reuses the scratch; rays fetch the words.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |
                     GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -40,7 +40,7 @@ private:
     void number_records(std::size_t tile_count);
     void find_room(std::span<const BrickRequest> requests, BrickPool& pool, std::span<ProducedTile> produced);
     void pack(std::size_t tile_count, const BrickPool& pool);
-    void dispatch(gl::Program& program, std::size_t tile_count, std::size_t threads_per_tile) const;
+    void dispatch(gl::Program& program, std::size_t tile_count, std::size_t threads) const;
     void gather_pairs(std::span<const BrickRequest> requests);
     void gather_pairs_of_mip(const Tile& tile, std::uint32_t number, int mip,
                              std::span<const std::uint32_t> triangles);
@@ -59,6 +59,7 @@ private:
     gl::Program store_heads_;
     gl::Program resolve_;
     std::vector<interop::BrickTile> batch_tiles_;
+    std::size_t record_count_ = 0;  ///< of the batch's bricks
     gl::Buffer tiles_;
     gl::Buffer heads_;
     gl::Buffer counts_;

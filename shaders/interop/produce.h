@@ -27,8 +27,9 @@ struct BrickTile {
     ivec3 low;      // low corner without the border, in voxels of the tile's level
     // log2 of a voxel's side in lattice units; the side itself if N = 3.
     int size;
-    uint first_word;  // where the brick lies in the pool, or NO_ROOM
-    int padding1, padding2, padding3;
+    uint first_word;    // where the brick lies in the pool, or NO_ROOM
+    uint first_record;  // records of the tiles before this one
+    int padding1, padding2;
 };
 
 // A tile of the fractal (renderer/produce/fractal_content.h) whose brick is being produced.
@@ -46,6 +47,8 @@ struct PackedCount {
     uint words;     // all words of the brick; 0: no voxel is occupied, and none is needed
 };
 #define NO_ROOM 0xFFFFFFFFu  // in BrickTile.first_word: the brick is not stored
+
+#define PAIR_MOST_ROWS 64  // rows of a BrickPair at most
 
 // A triangle that may touch a tile of the batch.
 struct BrickPair {

@@ -39,6 +39,6 @@ Footprint pixel_footprint(MeshTriangle triangle, MeshHit hit, PixelRay seen) {
 
 // Whether the alpha mask leaves surface at a point.
 bool is_shown(SurfacePoint point, SurfaceMaterial material) {
-    if ((material.flags >> MATERIAL_MASK_BIT & 1u) == 0u) return true;
+    if (!is_masked(material)) return true;
     return alpha_at(point, material) * ALPHA_SLACK >= material.alpha_cutoff;
 }

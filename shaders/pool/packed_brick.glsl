@@ -91,10 +91,48 @@ GroupBit group_bit(ivec3 v, int mip) {
     return GroupBit(first_border_group(mip) + number / 64, number % 64);
 }
 
+// Mip of a group's voxels.
+int mip_of_group(int group) {
+    int mip = 0;
+    if (group < INNER_GROUPS) {
+        while (mip < BRICK_MIPS && group + SUMMARY_WORDS >= first_mask_of(mip + 1)) ++mip;
+    } else {
+        while (mip < BRICK_MIPS && group >= first_border_group(mip + 1)) ++mip;
+    }
+    return mip;
+}
+
+// Place in its mip of the voxel whose occupancy is a group's bit.
+ivec3 voxel_of_bit(GroupBit at, int mip) {
+    if (at.group >= INNER_GROUPS) return border_voxel(64 * (at.group - first_border_group(mip)) + at.bit, mip);
+    const int blocks = MIP_BLOCKS_PER_SIDE(mip);
+    const int block = at.group + SUMMARY_WORDS - first_mask_of(mip);
+    const ivec3 c = ivec3(block % blocks, block / blocks % blocks, block / (blocks * blocks));
+    const ivec3 place = ivec3(at.bit % BLOCK_SIDE, at.bit / BLOCK_SIDE % BLOCK_SIDE, at.bit / (BLOCK_SIDE * BLOCK_SIDE));
+    return BLOCK_SIDE * c + place;
+}
+
 bool has_bit(uvec2 mask, int bit) { return ((bit < 32 ? mask.x : mask.y) >> (bit & 31) & 1u) != 0u; }
 
 // Number of bits below a bit.
 int bits_below(uvec2 mask, int bit) {
     const uint below = (1u << (bit & 31)) - 1u;
     return bit < 32 ? bitCount(mask.x & below) : bitCount(mask.x) + bitCount(mask.y & below);
+}
+
+// The bit that has `below` bits below it.
+int bit_of_rank(uvec2 mask, int below) {
+    const int in_low = bitCount(mask.x);
+    const bool is_low = below < in_low;
+    uint rest = is_low ? mask.x : mask.y;
+    int left = is_low ? below : below - in_low;
+    int bit = is_low ? 0 : 32;
+    for (int width = 16; width > 0; width >>= 1) {
+        const int count = bitCount(rest & (1u << width) - 1u);
+        if (left < count) continue;
+        left -= count;
+        bit += width;
+        rest >>= width;
+    }
+    return bit;
 }

@@ -13,8 +13,7 @@ void main() {
     if (i >= tile_count * uint(ALL_BORDER_GROUPS)) return;
     const uint tile = i / uint(ALL_BORDER_GROUPS);
     const int group = INNER_GROUPS + int(i % uint(ALL_BORDER_GROUPS));
-    int mip = 0;
-    for (; mip < BRICK_MIPS && group >= first_border_group(mip + 1); ++mip) {}
+    const int mip = mip_of_group(group);
     const int first = 64 * (group - first_border_group(mip));
     uvec2 mask = uvec2(0u);
     for (int bit = 0; bit < 64 && first + bit < BORDER_VOXELS(mip); ++bit) {

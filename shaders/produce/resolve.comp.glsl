@@ -1,5 +1,5 @@
-// One thread is one voxel of a mip of a new brick, border included: it turns the gathered sums into the voxel's
-// record, and clears them for the next batch.
+// One thread is one record of a new brick: it finds the voxel, turns the gathered sums into the record, and
+// clears them for the next batch.
 #include "interop/produce.h"
 #include "produce/scratch.glsl"
 #include "produce/heads.glsl"
@@ -10,6 +10,7 @@
 layout(r32ui, binding = IMAGE_BRICK_WORDS) writeonly uniform uimageBuffer brick_words;
 
 uniform uint tile_count;
+uniform uint record_count;  // of all tiles
 
 // Mean of the three sums from word `first` on.
 vec3 mean_of(uint first, float weight) {
@@ -27,55 +28,71 @@ uint packed_normals(uint sums, float weight) {
     return length(found.first) > LEAST_NORMAL ? pack_normals(found) : 0u;
 }
 
-// Writes the record of a voxel, if the voxel is occupied and the brick has room.
-void store_record(uint tile, int mip, ivec3 v, uint normals, uint color, uvec2 marks) {
-    const GroupBit at = group_bit(v, mip);
-    const uvec2 occupied = head_mask(tile, SUMMARY_WORDS + at.group);
+uint tile_of_record(uint record) {
+    uint low = 0u;
+    for (uint end = tile_count; end - low > 1u;) {
+        const uint middle = (low + end) / 2u;
+        if (tiles[middle].first_record <= record) low = middle;
+        else end = middle;
+    }
+    return low;
+}
+
+// The last group whose records do not begin behind this record of the tile.
+int group_of_record(uint tile, uint record) {
+    const uint ranks = tile * uint(HEAD_WORDS) + uint(HEAD_RANKS);
+    int low = 0;
+    for (int end = GROUPS; end - low > 1;) {
+        const int middle = (low + end) / 2;
+        if (heads[ranks + uint(middle)] <= record) low = middle;
+        else end = middle;
+    }
+    return low;
+}
+
+void store_record(uint tile, uint record, bool has_marks, uint normals, uint color, uvec2 marks) {
     const uint first_word = tiles[tile].first_word;
-    if (first_word == NO_ROOM || !has_bit(occupied, at.bit)) return;
-    const uint head = tile * uint(HEAD_WORDS);
-    const int record = int(heads[head + uint(HEAD_RANKS + at.group)]) + bits_below(occupied, at.bit);
-    const int word = int(first_word) + HEAD_WORDS + record * RECORD_WORDS;
+    if (first_word == NO_ROOM) return;
+    const int word = int(first_word) + HEAD_WORDS + int(record) * RECORD_WORDS;
     imageStore(brick_words, word, uvec4(normals));
 #if HAS_COLOR
     imageStore(brick_words, word + 1, uvec4(color));
 #endif
-    if (at.group >= MARKED_GROUPS) return;
-    const int mark = int(first_word + heads[head + uint(HEAD_MARKS)]) + 2 * record;
+    if (!has_marks) return;
+    const int mark = int(first_word + heads[tile * uint(HEAD_WORDS) + uint(HEAD_MARKS)] + 2u * record);
     imageStore(brick_words, mark, uvec4(marks.x));
     imageStore(brick_words, mark + 1, uvec4(marks.y));
 }
 
 void main() {
     const uint i = thread_index();
-    if (i >= tile_count * uint(VOXELS)) return;
-    const uint tile = i / uint(VOXELS);
-    int v = int(i % uint(VOXELS));
-    int mip = 0;
-    for (; mip < BRICK_MIPS && v >= MIP_VOXELS(mip); ++mip) v -= MIP_VOXELS(mip);
-    const int side = MIP_SIDE(mip);
-    const ivec3 place = ivec3(v % side, v / side % side, v / (side * side));
-    const uvec2 mask = uvec2(scratch[2u * i], scratch[2u * i + 1u]);
+    if (i >= record_count) return;
+    const uint tile = tile_of_record(i);
+    const uint record = i - tiles[tile].first_record;
+    GroupBit at = GroupBit(group_of_record(tile, record), 0);
+    const uint rank = heads[tile * uint(HEAD_WORDS) + uint(HEAD_RANKS + at.group)];
+    at.bit = bit_of_rank(head_mask(tile, SUMMARY_WORDS + at.group), int(record - rank));
+    const int mip = mip_of_group(at.group);
+    const uint voxel = scratch_voxel(tile, mip, voxel_of_bit(at, mip) + 1);
+    const uvec2 marks = uvec2(scratch[2u * voxel], scratch[2u * voxel + 1u]);
 
     uint normals = 0u;
     uint color = 0u;
-    if ((mask.x | mask.y) != 0u) {
-        const uint sums = sums_offset + i * uint(SUM_WORDS);
+    // With alpha masks, a voxel of a mip may be occupied because a finer voxel in it is.
+    if ((marks.x | marks.y) != 0u) {
+        const uint sums = sums_offset + voxel * uint(SUM_WORDS);
         const float weight = float(min(scratch[sums + SUM_WEIGHT], WEIGHT_LIMIT));
         normals = packed_normals(sums, weight);
 #if HAS_COLOR
         const vec3 colors = vec3(scratch[sums + SUM_COLOR], scratch[sums + SUM_COLOR + 1u],
                                  scratch[sums + SUM_COLOR + 2u]);
         // Square roots, whose steps look even to the eye; weighted with the coverage, as what is filtered.
-        const float covered = coverage_of_marks(mask);
+        const float covered = coverage_of_marks(marks);
         color = packUnorm4x8(vec4(sqrt(clamp(colors / (weight * COLOR_UNIT), 0.0, 1.0)) * covered, covered));
 #endif
-        scratch[2u * i] = 0u;
-        scratch[2u * i + 1u] = 0u;
+        scratch[2u * voxel] = 0u;
+        scratch[2u * voxel + 1u] = 0u;
         for (uint w = 0u; w < uint(SUM_WORDS); ++w) scratch[sums + w] = 0u;
     }
-#if !(HAS_MASK && BRICK_MIPS > 0)
-    else return;  // else a voxel may be occupied because a finer voxel in it is
-#endif
-    store_record(tile, mip, place - 1, normals, color, mask);
+    store_record(tile, record, at.group < MARKED_GROUPS, normals, color, marks);
 }

@@ -4,14 +4,8 @@
 #include "interop/produce.h"
 #include "interop/surface.h"
 #include "produce/scratch.glsl"
-#if CELL_BASE == 3
-#define ANY_VOXEL_SIDE 1
-#define FINER(size) ((size) / 4)
-#else
-#define ANY_VOXEL_SIDE 0
-#define FINER(size) ((size) - 2)
-#endif
-#include "voxelize/exact_triangle.glsl"
+#include "produce/cell_sides.glsl"
+#include "produce/row_marks.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_attributes.glsl"
 #include "voxelize/surface_color.glsl"
@@ -95,44 +89,29 @@ vec2 weights_under(Patch s, vec3 d) {
     return w / max(w.x + w.y, 1.0);
 }
 
-// The low corner of a voxel, or of a finer one, whose sides are `side` lattice units.
-vec3 from_corner(Patch s, ivec3 v, int side, float finer_side) { return vec3(v * side - s.corner) / finer_side; }
-
-bool is_masked(Patch s) { return (s.material.flags >> MATERIAL_MASK_BIT & 1u) != 0u; }
 #if HAS_MASK
 // Whether the alpha mask leaves surface at a point.
 bool is_kept(Patch s, vec2 w) { return alpha_at(point_of(s, w), s.material) * ALPHA_SLACK >= s.material.alpha_cutoff; }
 #endif
 
-// The marks of the triangle in the 4^3 finer voxels of voxel `v`, whose low corner is `low`;
-// `all_marks`: how many there are without its alpha mask. A finer row in doubt is marked as far as
-// the triangle may reach: coverage is an estimate, and whether the voxel is occupied has been decided
-// exactly. Of an alpha-masked triangle those finer voxels are marked under whose centres the mask leaves
-// surface.
-uvec2 fine_mask(ExactTriangle fine, Patch s, ivec3 v, vec3 low, out float all_marks) {
-    uvec2 mask = uvec2(0u);
-    all_marks = 0.0;
-    for (int i = 0; i < 16; ++i) {
-        const ivec2 row = 4 * v.yz + ivec2(i & 3, i >> 2);
-        bool in_doubt;
-        ivec2 span = filtered_row_span(fine, clamp(row, fine.low.yz, fine.high.yz), in_doubt);
-        span = ivec2(max(span.x - 4 * v.x, 0), min(span.y - 4 * v.x, 3));
-        const bool meets = span.x <= span.y && all(greaterThanEqual(row, fine.low.yz)) &&
-                           all(lessThanEqual(row, fine.high.yz));
-        uint bits = meets ? (0xFu << uint(span.x & 3)) & (0xFu >> uint(3 - span.y & 3)) : 0u;
-        all_marks += float(bitCount(bits));
+// The marks of the triangle in the 4^3 finer voxels of a voxel, whose low corner is `low`. `marks`: without its
+// alpha mask. Under the centres of the finer voxels that are left, the mask leaves surface.
+uvec2 kept_marks(Patch s, vec3 low, uvec2 marks) {
 #if HAS_MASK
-        if (is_masked(s)) {
-            for (int x = 0; x < 4; ++x) {
-                const vec3 centre = low + vec3(x, i & 3, i >> 2) + 0.5;
-                if (!is_kept(s, weights_under(s, centre))) bits &= ~(1u << x);
-            }
-        }
-#endif
-        if (i < 8) mask.x |= bits << (4 * i);
-        else mask.y |= bits << (4 * i - 32);
+    if (!is_masked(s.material)) return marks;
+    uvec2 kept = marks;
+    for (uvec2 rest = marks; (rest.x | rest.y) != 0u;) {
+        const bool in_low = rest.x != 0u;
+        const int bit = findLSB(in_low ? rest.x : rest.y);
+        const uvec2 mark = in_low ? uvec2(1u << bit, 0u) : uvec2(0u, 1u << bit);
+        const vec3 centre = low + vec3(bit & 3, bit >> 2 & 3, (bit >> 4) + (in_low ? 0 : 2)) + 0.5;
+        if (!is_kept(s, weights_under(s, centre))) kept &= ~mark;
+        rest &= ~mark;
     }
-    return mask;
+    return kept;
+#else
+    return marks;
+#endif
 }
 
 // Mean place of the marks, in finer voxels from the low corner of their voxel.
@@ -202,7 +181,7 @@ vec3 texture_in_voxel(Patch s, vec3 low, vec2 middle, float area) {
         const vec3 place = w.x * s.edge1 + w.y * s.edge2 - low;
         if (any(lessThan(place, vec3(-LINE_SLACK))) || any(greaterThan(place, vec3(4.0 + LINE_SLACK)))) continue;
 #if HAS_MASK
-        if (is_masked(s) && !is_kept(s, w)) continue;
+        if (is_masked(s.material) && !is_kept(s, w)) continue;
 #endif
         sum += vec4(texture_around(s, w, side_a, side_b), 1.0);
     }
@@ -216,7 +195,7 @@ vec3 texture_in_voxel(Patch s, vec3 low, vec2 middle, float area) {
 // A place in the voxel near which the triangle is shown.
 vec3 shown_place(Patch s, uvec2 mask, float count) {
 #if HAS_MASK
-    if (is_masked(s)) {  // the middle may lie in a hole; the middles of marks do not
+    if (is_masked(s.material)) {  // the middle may lie in a hole; the middles of marks do not
         const int mark = mask.x != 0u ? findLSB(mask.x) : 32 + findLSB(mask.y);
         return vec3(mark & 3, mark >> 2 & 3, mark >> 4) + 0.5;
     }
@@ -224,13 +203,11 @@ vec3 shown_place(Patch s, uvec2 mask, float count) {
     return middle_of(mask, count);
 }
 
-// Adds the triangle's part in one voxel; `voxel` is its number in the scratch.
-void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
-    const float side = float(side_of(fine));
-    const vec3 low = from_corner(s, v, 4 * side_of(fine), side);
-    float all_marks;
-    const uvec2 mask = fine_mask(fine, s, v, low, all_marks);
+// Adds the triangle's part in a voxel. `low`: the voxel's low corner; `voxel`: its number in the scratch.
+void splat(Patch s, vec3 low, uint voxel, uvec2 marks) {
+    const uvec2 mask = kept_marks(s, low, marks);
     if ((mask.x | mask.y) == 0u) return;
+    const float all_marks = float(bitCount(marks.x) + bitCount(marks.y));
     const float count = float(bitCount(mask.x) + bitCount(mask.y));
     if (mask.x != 0u) atomicOr(scratch[2u * voxel], mask.x);
     if (mask.y != 0u) atomicOr(scratch[2u * voxel + 1u], mask.y);
@@ -264,47 +241,74 @@ void splat(ExactTriangle fine, Patch s, ivec3 v, uint voxel) {
 #endif
 }
 
+// The voxels of each row of the thread, from the first voxel of the region on: first | end << 16.
+uint spans[PAIR_MOST_ROWS];
+int doubts[PAIR_MOST_ROWS];
+
+uint packed_span(ivec2 span, ivec3 low, ivec3 high) {
+    const int first = max(span.x, low.x) - low.x;
+    const int end = min(span.y, high.x) - low.x + 1;
+    return first < end ? uint(first) | uint(end) << 16 : 0u;
+}
+
+// Finds the spans of the rows. Those that the filter leaves in doubt are decided afterwards, because lanes run
+// in lockstep: doubles for one lane cost all lanes dearly at every turn.
+void find_spans(ExactTriangle t, ivec3 low, ivec3 high) {
+    int doubt_count = 0;
+    int row = 0;
+    for (int z = low.z; z <= high.z; ++z) {
+        for (int y = low.y; y <= high.y; ++y) {
+            bool in_doubt;
+            spans[row] = packed_span(filtered_row_span(t, ivec2(y, z), in_doubt), low, high);
+            if (in_doubt) doubts[doubt_count++] = row;
+            ++row;
+        }
+    }
+    const int across = high.y - low.y + 1;
+    for (int i = 0; i < doubt_count; ++i) {
+        const ivec2 yz = low.yz + ivec2(doubts[i] % across, doubts[i] / across);
+        spans[doubts[i]] = packed_span(exact_row_span(t, yz), low, high);
+    }
+}
+
 void main() {
     const uint i = thread_index();
     if (i >= pair_count) return;
-    const uint triangle = pairs[i].triangle;
     const uint tile_index = pairs[i].tile_mip & 0xFFFFu;
     const int mip = int(pairs[i].tile_mip >> 16);
     const ivec2 first_row = ivec2(pairs[i].rows & 0xFFu, pairs[i].rows >> 16 & 0xFFu);
     const ivec2 row_count = ivec2(pairs[i].rows >> 8 & 0xFFu, pairs[i].rows >> 24);
     const BrickTile tile = tiles[tile_index];
     const int size = tile.size + mip;  // only trees of powers of two have mips
-
-    const uvec3 corners = surface_triangles[triangle].vertices;
-    const ivec3 a = surface_position(corners.x);
-    const ivec3 b = surface_position(corners.y);
-    const ivec3 c = surface_position(corners.z);
+    const SurfaceTriangle triangle = surface_triangles[pairs[i].triangle];
+    const ivec3 a = surface_position(triangle.vertices.x);
+    const ivec3 b = surface_position(triangle.vertices.y);
+    const ivec3 c = surface_position(triangle.vertices.z);
     const ExactTriangle coarse = exact_triangle(a, b, c, size);
     const ExactTriangle fine = exact_triangle(a, b, c, FINER(size));
-    const Patch s = make_patch(corners, surface_materials[surface_triangles[triangle].material], a, b, c,
-                               float(side_of(fine)));
+    const float finer_side = float(side_of(fine));
+    const Patch s = make_patch(triangle.vertices, surface_materials[triangle.material], a, b, c, finer_side);
 
     const ivec3 region_low = (tile.low >> mip) - 1;
     const ivec3 low = max(coarse.low, region_low + ivec3(0, first_row));
     const ivec3 high = min(coarse.high, region_low + ivec3(MIP_SIDE(mip) - 1, first_row + row_count - 1));
     if (any(greaterThan(low, high))) return;
-    // One loop over rows and voxels alike: threads that run side by side wait for the longest, not for the
-    // product of the longest of each nested loop.
-    ivec3 v = ivec3(0, low.y - 1, low.z);
-    int last = -1;
-    for (;;) {
-        if (v.x > last) {
-            ++v.y;
-            if (v.y > high.y) {
-                v.y = low.y;
-                ++v.z;
-            }
-            if (v.z > high.z) break;
-            const ivec2 span = row_span(coarse, v.yz);
-            v.x = max(span.x, low.x);
-            last = min(span.y, high.x);
+    const int across = high.y - low.y + 1;
+    const int rows = across * (high.z - low.z + 1);
+    find_spans(coarse, low, high);
+    for (int row = 0; row < rows;) {
+        // On to a row that the triangle meets: threads that run side by side wait here for each other, and not
+        // where a row costs more.
+        while (row < rows && spans[row] == 0u) ++row;
+        if (row == rows) break;
+        const ivec3 v = ivec3(low.x + int(spans[row] & 0xFFFFu), low.y + row % across, low.z + row / across);
+        const int end = low.x + int(spans[row] >> 16) - v.x;
+        const RowMarks marks = row_marks(fine, v.yz, 4 * v.x);
+        const uint first_voxel = scratch_voxel(tile_index, mip, v - region_low);
+        for (int x = 0; x < end; ++x) {
+            const vec3 voxel_low = vec3(plane_of(coarse, v + ivec3(x, 0, 0)) - s.corner) / finer_side;
+            splat(s, voxel_low, first_voxel + uint(x), voxel_marks(marks, 4 * x));
         }
-        if (v.x <= last) splat(fine, s, v, scratch_voxel(tile_index, mip, v - region_low));
-        ++v.x;
+        ++row;
     }
 }

@@ -90,12 +90,14 @@ ivec3 voxel_at(ExactTriangle t, ivec3 place) { return place >> t.shift; }
 float lattice_unit(ExactTriangle t) { return 1.0; }
 float voxel_unit(ExactTriangle t) { return float(t.side); }
 vec2 in_voxels(ExactTriangle t, vec2 x) { return x / float(t.side); }
+vec4 in_voxels(ExactTriangle t, vec4 x) { return x / float(t.side); }
 // A quotient adds a rounding of up to 5 u, of values under the reach that the error is computed from.
 #define PLANE_ERROR (0.75 * SIDE_ERROR)
 #else
 float lattice_unit(ExactTriangle t) { return 1.0 / float(1 << t.shift); }
 float voxel_unit(ExactTriangle t) { return 1.0; }
 vec2 in_voxels(ExactTriangle t, vec2 x) { return x; }
+vec4 in_voxels(ExactTriangle t, vec4 x) { return x; }
 #define PLANE_ERROR (0.5 * SIDE_ERROR)
 #endif
 

@@ -142,7 +142,7 @@ void sample_point(inout Gathered shown, inout Gathered hidden, SurfacePoint p, F
     const vec3 color = color_over(p, footprint, material);
     const vec3 normal = normal_at(p, triangle_normal);
 #if HAS_MASK
-    if ((material.flags >> MATERIAL_MASK_BIT & 1u) != 0u) {
+    if (is_masked(material)) {
         const float alpha = material.width != 0u ? nearest_texel(material, texcoord_at(p)).a : 1.0;
         if (!passes(alpha, vertex_color_at(p).a, material)) {
             float hidden_weight;

@@ -7,6 +7,7 @@
 #include "voxelize/bits.glsl"
 #define ANY_VOXEL_SIDE 0
 #include "voxelize/exact_triangle.glsl"
+#include "voxelize/material.glsl"
 #include "voxelize/queue.glsl"
 #include "voxelize/row_steps.glsl"
 #include "voxelize/surface.glsl"
@@ -37,7 +38,7 @@ uint shared_queue(RowSteps steps) {
 // Puts the triangle in a queue if it is left to a later pass. `size`: size of its bounding box in the region.
 bool enqueue_if_not_small(ExactTriangle t, uint triangle, uint material, ivec3 size) {
     const float rows = float(size.y) * float(size.z);
-    if ((surface_materials[material].flags & (1u << MATERIAL_MASK_BIT)) != 0u) {
+    if (is_masked(surface_materials[material])) {
         const bool small = rows * float(size.x) <= VOXEL_MASKED_SMALL_BOX;
         enqueue(small ? VOXEL_QUEUE_MASKED_SMALL : VOXEL_QUEUE_MASKED_LARGE, triangle);
         return true;

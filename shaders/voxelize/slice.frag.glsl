@@ -70,7 +70,7 @@ uvec4 slice_bits(ivec2 range, int target) {
 bool is_shown(vec2 place) {
     const uint triangle = raster_lists[triangle_place(kind, slice_primitive)];
     const SurfaceMaterial material = surface_materials[surface_triangles[triangle].material];
-    if ((material.flags >> MATERIAL_MASK_BIT & 1u) == 0u) return true;
+    if (!is_masked(material)) return true;
     const uint corners = corners_of(kind);
     const uint vertex = first_vertex(kind) + slice_primitive * corners;
     SurfacePoint point;

@@ -1,5 +1,6 @@
 // Base colour and normal of a surface at a point of one of its triangles.
 #include "interop/surface.h"
+#include "voxelize/material.glsl"
 #include "voxelize/octahedral.glsl"
 #include "voxelize/surface_attributes.glsl"
 
@@ -37,9 +38,6 @@ uint wrapped(float coordinate, uint size, uint mode) {
     if (mode == 1u && mod(floor(coordinate), 2.0) == 1.0) unit = 1.0 - unit;
     return uint(clamp(floor(unit * n), 0.0, n - 1.0));
 }
-
-uint wrap_s_of(SurfaceMaterial material) { return material.flags >> MATERIAL_WRAP_S_SHIFT & 3u; }
-uint wrap_t_of(SurfaceMaterial material) { return material.flags >> MATERIAL_WRAP_T_SHIFT & 3u; }
 
 // Texel alphas and vertex alphas are compared as whole numbers (SurfaceMaterial.alpha_threshold).
 bool passes(float texel_alpha, float vertex_alpha, SurfaceMaterial material) {
@@ -109,7 +107,7 @@ MipLevel level_of_width(SurfaceMaterial material, float width) {
 vec4 kept_texel(SurfaceMaterial material, MipLevel level, uvec2 place, float vertex_alpha) {
     const vec4 texel = unpackUnorm4x8(surface_texel(level.offset + place.y * level.size.x + place.x));
     float kept = 1.0;
-    if ((material.flags >> MATERIAL_MASK_BIT & 1u) != 0u)
+    if (is_masked(material))
         kept = !level.finest ? texel.a : passes(texel.a, vertex_alpha, material) ? 1.0 : 0.0;
     return vec4(kept * linear_from_srgb(texel.rgb), kept);
 }
@@ -149,8 +147,7 @@ vec4 mean_texel(SurfaceMaterial material, vec2 uv, vec2 side_a, vec2 side_b, flo
     const float shorter = min(min(a, b), 16777216.0);
     const float width = max(shorter / float(MEAN_FINENESS), longer / float(MEAN_MOST_TAPS));
     // Coarser levels know what passes for the highest vertex alpha alone.
-    const bool masked = (material.flags >> MATERIAL_MASK_BIT & 1u) != 0u;
-    const MipLevel level = level_of_width(material, masked && vertex_alpha * ALPHA_SLACK < 1.0 ? 0.0 : width);
+    const MipLevel level = level_of_width(material, is_masked(material) && vertex_alpha * ALPHA_SLACK < 1.0 ? 0.0 : width);
     const float most = max(width, 1.0);
     const int long_taps = int(clamp(ceil(longer / most), 1.0, float(MEAN_MOST_TAPS)));
     const int short_taps = int(clamp(ceil(shorter / most), 1.0, float(MEAN_FINENESS)));

@@ -121,6 +121,28 @@ TEST_F(ProducedMeans, CheckerboardOfSingleTexelsIsOneTone) {
     }
 }
 
+TEST_F(ProducedMeans, AWallThatFillsALargeBrickIsWholeWhateverItsTextureTakes) {
+    constexpr int side = 64;  // a pair of triangle and row has 66 voxels
+    for (const scenes::AlphaMode mode : {scenes::AlphaMode::opaque, scenes::AlphaMode::mask}) {
+        Painted painted;
+        for (const auto& [u, v] :
+             {std::pair{0.0F, 0.0F}, {1.0F, 0.0F}, {1.0F, 1.0F}, {0.0F, 0.0F}, {1.0F, 1.0F}, {0.0F, 1.0F}})
+            painted.add_vertex({u, v, 0.3F}, glm::vec3(0.0F), glm::u8vec3(255), glm::vec2(u, 40.0F * v));
+        painted.use_image(512, 512, checkerboard(512, opaque_white, opaque_white), mode);
+        const TreeShape shape = make_tree_shape(2, side, side);
+        const voxelizer::Surface surface = painted.surface(unit_cube(side));
+        BrickMaker maker(shape, surface, 1);
+        const ProducedBrick brick = maker.produce_one({});
+        const int z = int(0.3 * side);
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                ASSERT_TRUE(brick.occupied({x, y, z})) << x << ", " << y;
+                ASSERT_NEAR(shown_color(brick, {x, y, z}).g, 255.0, 1.0) << x << ", " << y;
+            }
+        }
+    }
+}
+
 TEST_F(ProducedMeans, StretchedTexturesAreMeansToo) {
     // A texel is 64 times as long as it is wide.
     Painted painted = tilted_quad(0.5, 1.0);
