@@ -80,22 +80,28 @@ void check_set(ContentKind kind, const TreeOptions& tree) {
                     "it is cut in halves: choose N = 2, 4 or 8");
 }
 
+/// The shape of a tree whose root cube the content fills.
+TreeShape set_shape(const TreeOptions& tree) {
+    return tree.max_level ? tree_shape_of(tree) : make_tree_shape_within(tree.n, tree.m, tree.max_resolution);
+}
+
 }  // namespace
 
 std::unique_ptr<Content> surface_content(const scenes::Scene& scene, const scenes::Snapshot& snapshot,
                                          const TreeOptions& tree, const gl::ShaderSource& shaders) {
     const TreeShape shape = tree_shape_of(tree);
-    if (shape.has_windows()) {
-        throw Error(Fault::usage, "tree", "a surface has no voxels as fine as its finest level",
-                    fmt::format("give it at most 2^{} voxels across", MAX_RESOLUTION_BITS - MARK_BITS));
-    }
-    if (shape.cell_base() == 2 && shape.voxel_level(shape.max_level) > MAX_RESOLUTION_BITS - MARK_BITS) {
+    constexpr int most_voxels = 1 << (MAX_RESOLUTION_BITS - MARK_BITS);
+    if (shape.has_windows() || (shape.cell_base() == 2 && shape.resolution() > most_voxels)) {
         throw Error(Fault::usage, "tree",
                     fmt::format("rays through a surface count {} parts of a voxel, and 2^{} in all",
                                 1 << MARK_BITS, MAX_RESOLUTION_BITS),
-                    fmt::format("give it at most {} voxels across", 1 << (MAX_RESOLUTION_BITS - MARK_BITS)));
+                    fmt::format("give it at most {} voxels across",
+                                make_tree_shape_within(tree.n, tree.m, most_voxels).resolution()));
     }
-    const voxelizer::Grid grid = voxelizer::grid_around(snapshot.bounds, shape.resolution());
+    // The root cube has m n^k voxels across; the scene, those that were asked for, in the cube's low corner.
+    const int voxels = tree.max_level ? shape.resolution() : tree.max_resolution;
+    voxelizer::Grid grid = voxelizer::grid_around(snapshot.bounds, voxels);
+    grid.resolution = glm::ivec3(shape.resolution());
     const voxelizer::Surface surface = voxelizer::build_surface(scene, snapshot, grid, {.attributes = true});
     return std::make_unique<SurfaceContent>(shape, surface, shaders);
 }
@@ -116,7 +122,7 @@ std::unique_ptr<Content> volume_content(std::shared_ptr<const Field> field, cons
 }
 
 std::unique_ptr<Content> fractal_content(const TreeOptions& tree, const gl::ShaderSource& shaders) {
-    return std::make_unique<FractalContent>(tree_shape_of(tree), shaders);
+    return std::make_unique<FractalContent>(set_shape(tree), shaders);
 }
 
 ContentKind content_kind(std::string_view path_or_builtin) {
@@ -184,7 +190,8 @@ std::optional<glm::i64vec3> ContentSource::voxels() const {
 
 std::optional<std::int64_t> ContentSource::finest_resolution() const {
     if (kind_ == ContentKind::fractal) return std::nullopt;
-    if (!field_) return tree_shape_of(tree_).resolution();
+    if (scene_ && !tree_.max_level) return tree_.max_resolution;
+    if (!field_) return set_shape(tree_).resolution();
     const FieldFrame& frame = field_->frame();
     const VolumeShape shape = make_volume_shape(frame, tree_.n, tree_.m, tree_.max_resolution);
     const std::int64_t samples = std::max({frame.size.x, frame.size.y, frame.size.z});

@@ -113,8 +113,9 @@ public:
     [[nodiscard]] const scenes::Snapshot* snapshot() const { return scene_ ? &scene_->snapshot : nullptr; }
     /// Voxels of a volume along each axis; none for other kinds.
     [[nodiscard]] std::optional<glm::i64vec3> voxels() const;
-    /// The most voxels along the longest axis that rays may ask for, which TreeOptions::max_resolution need
-    /// not be: a level has N times as many as the one above it. None for the fractal.
+    /// The most voxels along the longest axis that rays may ask for: TreeOptions::max_resolution for
+    /// surfaces, and at most that for volumes and sets, whose levels have N times as many as the ones above
+    /// them. None for the fractal.
     [[nodiscard]] std::optional<std::int64_t> finest_resolution() const;
     /// Which parts of the file were ignored, and why.
     [[nodiscard]] const std::vector<scenes::Warning>& warnings() const { return warnings_; }

@@ -66,8 +66,8 @@ struct LightFrame {
 /// stay in the pools from one frame to the next. Needs the context that was current at its construction.
 ///
 /// The picture depends on the view (and the mix) alone: not on the sizes of the pools, nor on what earlier
-/// frames left in them. So the renderer keeps the finished rows of the last view (up to 64 MiB), and returns
-/// them without marching for as long as the view does not change.
+/// frames left in them. So the renderer keeps the finished rows of the last view of one sample (up to 64
+/// MiB), and returns them without marching for as long as the view does not change.
 class Renderer {
 public:
     /// @throws Error  Fault::usage if pools or march options do not suit the content; Fault::memory if the
@@ -84,12 +84,12 @@ public:
     void set_mix(const Mix& mix);
 
     /// @throws Error (Fault::usage)  if the view is invalid, if the picture does not have the rows, or if a
-    ///                               budget is combined with TileQueries::blocks.
+    ///                               budget is combined with TileQueries::blocks or with several samples.
     Frame render(const View& view, const Request& request = {});
 
     /// Renders with the same rays as render(), but returns shares of the light instead of colours.
     /// @throws Error (Fault::usage)  as render() does, and for volumes: a pixel of a volume gathers light
-    ///                               from many places.
+    ///                               from many places; and for views of several samples.
     LightFrame light(const View& view, const Progress& progress = {});
 
     /// Produces bricks for a view that may be asked for next, in room that the last frame does not need,
@@ -107,6 +107,8 @@ public:
     void forget_picture();
 
 private:
+    [[nodiscard]] Frame render_sample(const View& view, const Request& request);
+
     std::unique_ptr<FrameLoop> loop_;
 };
 

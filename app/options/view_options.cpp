@@ -18,7 +18,6 @@
 namespace cairn::app {
 namespace {
 
-constexpr int max_tree_resolution = 1 << MAX_RESOLUTION_BITS;
 constexpr int max_cache_mib = 1 << 20;
 constexpr int max_copies = 4096;
 /// The finest voxels are 2^-60 of the fractal. At this zoom they are still finer than a pixel.
@@ -180,11 +179,7 @@ OptionTable<ViewOptions> shadow_table() {
 
 OptionTable<ViewOptions> tree_table() {
     return {
-        whole_row<ViewOptions>(
-            "--max-resolution", "N",
-            fmt::format("the most voxels across the scene that rays may ask for\n(default: {})",
-                        renderer::TreeOptions{}.max_resolution),
-            least_brick, max_tree_resolution, [](auto& options) -> auto& { return options.max_resolution; }),
+        max_resolution_row<ViewOptions>([](auto& options) -> auto& { return options.max_resolution; }),
         mebibytes_row(
             "--brick-pool", "memory for bricks, in MiB (default: {default})", 1,
             [](auto& options) -> auto& { return options.pools.brick_bytes; }),
@@ -237,6 +232,12 @@ OptionTable<ViewOptions> look_table() {
         whole_row<ViewOptions>(
             "--copies", "K", "copies of a volume per axis, side by side (default:\n{default})", 1, max_copies,
             [](auto& options) -> auto& { return options.copies; }),
+        whole_row<ViewOptions>(
+            "--samples", "N",
+            fmt::format(
+                "rays per pixel, 1 to {}, whose mean the pixel shows: smooth\nedges (default: {{default}})",
+                renderer::MAX_SAMPLES),
+            1, renderer::MAX_SAMPLES, [](auto& options) -> auto& { return options.view.samples; }),
         steps_row<ViewOptions>([](auto& options) -> auto& { return options.steps_per_voxel; }),
         gradient_row<ViewOptions>([](auto& options) -> auto& { return options.gradient_threshold; }),
         named_row<ViewOptions>(

@@ -7,7 +7,9 @@
 #include "app/options/names.h"
 #include "app/options/option_table.h"
 #include "renderer/march/march_options.h"
+#include "renderer/pool/tree_shape.h"
 #include "renderer/produce/volume.h"
+#include "shaders/interop/pool.h"
 #include "shaders/interop/volume.h"
 
 /// Rows of the options that say how voxels are rendered, for every verb that has them. `member` is
@@ -40,6 +42,14 @@ template <typename Options, typename Member>
                               "voxels of a brick per axis: 8, 16, 32 or 64; 27 or 81 with\n--tree-n 3 "
                               "(default: 16, or 27)",
                               least_brick, largest_brick, member);
+}
+template <typename Options, typename Member>
+[[nodiscard]] OptionRow<Options> max_resolution_row(Member member) {
+    return whole_row<Options>("--max-resolution", "N",
+                              fmt::format("voxels across the scene at the finest level, of volumes at\nmost "
+                                          "(default: {})",
+                                          renderer::TreeOptions{}.max_resolution),
+                              least_brick, 1 << MAX_RESOLUTION_BITS, member);
 }
 template <typename Options, typename Member>
 [[nodiscard]] OptionRow<Options> traversal_row(Member member) {

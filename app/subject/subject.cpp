@@ -130,9 +130,9 @@ std::vector<std::string> Subject::unmet(const ViewOptions& options, const render
     const bool all_of_volume = samples && finest == std::max({samples->x, samples->y, samples->z});
     if (options.max_resolution && finest && *finest != *options.max_resolution && !all_of_volume)
         texts.push_back(
-            fmt::format("--max-resolution {}: rays ask for at most {} voxels across, {} per brick and "
-                        "{} times as many per level",
-                        *options.max_resolution, *finest, tree().m, tree().n));
+            fmt::format("--max-resolution {}: rays ask for at most {} voxels across, because a level has {} "
+                        "times as many as the one above it",
+                        *options.max_resolution, *finest, tree().n));
     return texts;
 }
 

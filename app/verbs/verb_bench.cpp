@@ -57,6 +57,8 @@ std::vector<VoxelRow> voxel_rows() {
     return {
         {tree_n_row<Voxels>([](auto& voxels) -> auto& { return voxels.tree_n; }), &Taken::tree},
         {brick_m_row<Voxels>([](auto& voxels) -> auto& { return voxels.brick_m; }), &Taken::tree},
+        {max_resolution_row<Voxels>([](auto& voxels) -> auto& { return voxels.max_resolution; }),
+         &Taken::tree},
         {traversal_row<Voxels>([](auto& voxels) -> auto& { return voxels.traversal; }), &Taken::traversal},
         {tile_queries_row<Voxels>([](auto& voxels) -> auto& { return voxels.tile_queries; }),
          &Taken::tile_queries},

@@ -36,6 +36,7 @@ struct Options {
     std::optional<std::string> mesh;   ///< scene that is drawn as triangles
     std::optional<std::string> proxy;  ///< scene whose faces bound the rays
     bool mesh_shadows = false;
+    bool measure = false;
 };
 
 void add_options(CLI::App& verb, Options& options) {
@@ -52,6 +53,11 @@ void add_options(CLI::App& verb, Options& options) {
         ->type_name("SCENE");
     add_table(verb, frame_table(), options.view);
     add_table(verb, zoom_table(), options.view);
+    verb.add_flag(
+        "--measure", options.measure,
+        fmt::format("draw the picture up to {} times more, and report how long\na frame takes whose "
+                    "bricks are there",
+                    measured_frames));
     add_common_options(verb, options.common);
 }
 
@@ -138,6 +144,12 @@ renderer::Mix load_mix(const Options& options, Report& report) {
 ExitCode run(const Options& options) {
     const bool quiet = options.common.report.quiet;
     const std::filesystem::path output = options.output.value_or(default_output);
+    if (options.measure && quiet && !options.common.report.json)
+        throw Error(Fault::usage, "--measure", "nothing reports the time",
+                    "add --json, or leave --quiet out");
+    if (options.view.frame_budget_ms && options.view.view.samples != 1)
+        throw Error(Fault::usage, "--samples", "a frame within a budget has one ray per pixel",
+                    "leave --frame-budget or --samples out");
     check_writable(output);
     Report report(options.common.report);
     report.add("scene", options.common.scene.scene);
@@ -174,8 +186,7 @@ ExitCode run(const Options& options) {
     write_png(first.image, output);
     const double write_ms = watch.lap_ms();
     renderer::FrameStatistics last = first.statistics;
-    // Without a report, frames are not repeated to measure them.
-    if (!quiet || options.common.report.json) {
+    if (options.measure) {
         const Repeated repeated = repeat(renderer, view, request, quiet);
         report.add("frame_ms", repeated.median_ms);
         last = repeated.last;
@@ -183,6 +194,7 @@ ExitCode run(const Options& options) {
     driver.check();
 
     report.add("write_ms", write_ms);
+    report.add("samples", view.samples);
     report.add("width", view.size.width);
     report.add("height", view.size.height);
     add_counters(first.statistics, last, report);

@@ -38,7 +38,10 @@ constexpr int max_frames = 1 << 30;
 constexpr double longest_wait = 5.0;
 
 struct Options {
-    Options() { view.view.size = {1024, 768}; }
+    Options() {
+        view.view.size = {1024, 768};
+        view.view.samples = 16;  // taken while the camera rests
+    }
     ReportOptions report;
     SceneOptions scene;
     DriverOptions driver;

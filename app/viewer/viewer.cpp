@@ -32,8 +32,9 @@ constexpr double longest_fly_step = 0.2;  // seconds; after a pause the camera m
 constexpr int least_side = 16;
 constexpr double forever = 1e9;
 
-/// The view with its width and height scaled.
+/// The view with its width and height scaled, and one ray per pixel.
 renderer::View scaled(renderer::View view, double scale) {
+    view.samples = 1;
     view.size.width = std::clamp(int(std::lround(view.size.width * scale)),
                                  std::min(least_side, view.size.width), view.size.width);
     view.size.height = std::clamp(int(std::lround(view.size.height * scale)),

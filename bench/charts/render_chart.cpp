@@ -1,5 +1,6 @@
 // Converged frames by time and by error against a picture of the triangles with 64 samples per pixel: over
-// pixel error and the shape of the tree and, at one shape and pixel error, over traversals and pool sizes.
+// pixel error and the shape of the tree; at one shape, over samples per pixel; and at one pixel error, over
+// traversals and pool sizes.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -26,6 +27,7 @@ constexpr renderer::TreeOptions base{};
 constexpr std::array pixel_errors = {0.35, 0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0};
 constexpr std::array<std::array<int, 2>, 7> shapes = {
     {{base.n, base.m}, {2, 16}, {2, 32}, {3, 27}, {4, 8}, {4, 32}, {8, 16}}};
+constexpr std::array sample_counts = {2, 4, 8, 16};
 constexpr std::array pools = {32U << 20U, 8U << 20U};
 
 /// The parameters of a contender.
@@ -33,6 +35,7 @@ struct Setting {
     std::string varied;
     renderer::TreeOptions tree = {};
     renderer::RendererOptions options = {};
+    int samples = 1;
 };
 
 const char* name_of(renderer::Traversal traversal) {
@@ -61,6 +64,12 @@ public:
             for (std::size_t i = 0; i < pixel_errors.size(); ++i)
                 if (is_base || i % 2 == 1) add(setting, ours, pixel_errors[i]);
         }
+        for (const int samples : sample_counts) {
+            const Setting setting{"samples", base, usual, samples};
+            const auto ours = make(setting);
+            for (std::size_t i = 1; i < pixel_errors.size(); i += 2)
+                add(setting, ours, pixel_errors[i]);
+        }
         for (const auto traversal : {renderer::Traversal::restart, renderer::Traversal::stackless}) {
             Setting setting{"traversal", base, usual};
             setting.options.march.traversal = traversal;
@@ -77,15 +86,15 @@ public:
     void add_rows(const std::string& name, const reference::ShadedImage& truth, Table& table) const {
         for (std::size_t i = 0; i < contenders_.size(); ++i) {
             const FrameContender& contender = contenders_[i];
-            const auto& [varied, tree, options] = settings_[i];
+            const auto& [varied, tree, options, samples] = settings_[i];
             const PictureErrors errors = picture_errors(contender.image, truth);
-            table.rows.push_back(
-                on_this_machine({name, varied, std::int64_t(contender.view.size.width), std::int64_t(tree.n),
-                                 std::int64_t(tree.m), std::string(name_of(options.march.traversal)),
-                                 double(options.pools.brick_bytes) / mebibyte,
-                                 contender.view.detail.pixel_error, median(contender.samples_ms), errors.rmse,
-                                 errors.silhouette, std::int64_t(contender.converged.bricks_used),
-                                 std::int64_t(contender.converged.bricks_produced), truth.milliseconds}));
+            table.rows.push_back(on_this_machine(
+                {name, varied, std::int64_t(contender.view.size.width), std::int64_t(tree.n),
+                 std::int64_t(tree.m), std::string(name_of(options.march.traversal)),
+                 double(options.pools.brick_bytes) / mebibyte, contender.view.detail.pixel_error,
+                 std::int64_t(samples), median(contender.samples_ms), errors.rmse, errors.silhouette,
+                 std::int64_t(contender.converged.bricks_used),
+                 std::int64_t(contender.converged.bricks_produced), truth.milliseconds}));
         }
     }
 
@@ -98,6 +107,7 @@ private:
     void add(Setting setting, std::shared_ptr<renderer::Renderer> ours, double pixel_error) {
         renderer::View view = view_;
         view.detail.pixel_error = pixel_error;
+        view.samples = setting.samples;
         contenders_.emplace_back(std::move(ours), view);
         settings_.push_back(std::move(setting));
     }
@@ -114,9 +124,9 @@ private:
 
 Chart chart_render(const ChartOptions& options) {
     Chart chart;
-    chart.table.columns = {"scene",           "varied",      "size",   "n",      "m",          "traversal",
-                           "pool_mib",        "pixel_error", "ms",     "rmse",   "silhouette", "bricks_used",
-                           "bricks_produced", "truth_ms",    "driver", "threads"};
+    chart.table.columns = {"scene",       "varied",          "size",     "n",      "m",      "traversal",
+                           "pool_mib",    "pixel_error",     "samples",  "ms",     "rmse",   "silhouette",
+                           "bricks_used", "bricks_produced", "truth_ms", "driver", "threads"};
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) {
         add_real_scenes(chart, options, {"stanford_bunny_69k.glb"}, scenes);

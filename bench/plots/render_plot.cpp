@@ -23,6 +23,7 @@ struct Point {
 std::string series_of(const Row& row) {
     const std::string& varied = row.text("varied");
     if (varied == "shape") return fmt::format("N {}, M {}", row.whole("n"), row.whole("m"));
+    if (varied == "samples") return fmt::format("{} samples", row.whole("samples"));
     if (varied == "traversal") return row.text("traversal");
     return fmt::format("pool of {:g} MiB", row.number("pool_mib"));
 }
@@ -103,7 +104,7 @@ private:
             for (const Point& point : points_) {
                 if (point.scene != scene || point.series != series_[s]) continue;
                 lines += fmt::format("{:.6g} {:.6g}\n", point.ms, point.errors[error]);
-                is_line = point.varied == "shape";
+                is_line = point.varied == "shape" || point.varied == "samples";
             }
             blocks += data_block(fmt::format("$s{}", s), lines);
             const PlotStyle& style = plot_styles[s % plot_styles.size()];

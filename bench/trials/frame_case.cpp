@@ -122,10 +122,13 @@ Cell FrameCase::triangles() const {
 renderer::TreeOptions FrameCase::fitted(const renderer::TreeOptions& tree) const {
     if (!data_->is_sponge()) return tree;
     const renderer::TreeOptions usual = renderer::usual_tree("builtin:sponge");
-    if (tree.n == usual.n) return {.n = tree.n, .m = tree.m, .max_resolution = usual.max_resolution};
-    if (tree.n != renderer::TreeOptions{}.n || tree.m != renderer::TreeOptions{}.m)
+    const renderer::TreeOptions surfaces;
+    const bool is_given = tree.max_resolution != surfaces.max_resolution;
+    const int resolution = is_given ? tree.max_resolution : usual.max_resolution;
+    if (tree.n == usual.n) return {.n = tree.n, .m = tree.m, .max_resolution = resolution};
+    if (tree.n != surfaces.n || tree.m != surfaces.m)
         throw Error(Fault::usage, "tree", "the sponge is cut in thirds", "choose N = 3");
-    return usual;
+    return {.n = usual.n, .m = usual.m, .max_resolution = resolution};
 }
 
 FrameCase::ShownField FrameCase::shown_field(const renderer::TreeOptions& tree) const {
@@ -134,7 +137,7 @@ FrameCase::ShownField FrameCase::shown_field(const renderer::TreeOptions& tree) 
         const double voxel_size = std::min({spacing.x, spacing.y, spacing.z});
         return {std::make_shared<renderer::DenseField>(*volume, tree.n), opaque(scan_empty, voxel_size)};
     }
-    const std::int64_t resolution = renderer::tree_shape_of(tree).resolution();
+    const std::int64_t resolution = tree.max_resolution;
     const bool are_repeated = std::get<Data::Shells>(data_->shown).are_repeated;
     const int copies = are_repeated ? int(std::max<std::int64_t>(resolution / copy_resolution, 1)) : 1;
     const double side = 1.0 / copies;
@@ -154,7 +157,11 @@ renderer::Renderer FrameCase::make(const renderer::TreeOptions& tree, const gl::
 }
 
 renderer::TreeShape FrameCase::shape(const renderer::TreeOptions& tree) const {
-    if (data_->volume() == nullptr) return renderer::tree_shape_of(fitted(tree));
+    if (data_->is_sponge()) {
+        const renderer::TreeOptions thirds = fitted(tree);
+        return renderer::make_tree_shape_within(thirds.n, thirds.m, thirds.max_resolution);
+    }
+    if (data_->scene() != nullptr) return renderer::tree_shape_of(tree);
     const ShownField shown = shown_field(tree);
     return renderer::make_volume_shape(shown.field->frame(), tree.n, tree.m, tree.max_resolution).tree;
 }

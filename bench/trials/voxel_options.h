@@ -11,7 +11,7 @@ namespace cairn::bench {
 
 /// Options of rendering voxels that a chart may not vary itself; none: the chart's own choice.
 struct VoxelOptions {
-    std::optional<int> tree_n, brick_m;
+    std::optional<int> tree_n, brick_m, max_resolution;
     std::optional<renderer::Traversal> traversal;
     std::optional<renderer::TileQueries> tile_queries;
     /// Steps of a ray per voxel of a volume.
@@ -25,6 +25,7 @@ struct VoxelOptions {
     [[nodiscard]] renderer::TreeOptions tree(renderer::TreeOptions own = {}) const {
         own.n = tree_n.value_or(own.n);
         own.m = brick_m.value_or(own.n == 3 && own.m == renderer::TreeOptions{}.m ? 27 : own.m);
+        own.max_resolution = max_resolution.value_or(own.max_resolution);
         return own;
     }
     [[nodiscard]] renderer::RendererOptions renderer(renderer::RendererOptions own = {}) const {
@@ -47,7 +48,7 @@ struct VoxelOptions {
 
 /// The options of VoxelOptions that a chart takes.
 struct VoxelOptionsTaken {
-    bool tree = false;  ///< N and M
+    bool tree = false;  ///< N, M and the resolution
     bool traversal = false;
     bool tile_queries = false;
     bool volume = false;  ///< steps per voxel, and the gradient's threshold

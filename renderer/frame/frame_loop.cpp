@@ -14,6 +14,9 @@
 namespace cairn::renderer {
 namespace {
 
+/// Parts in a row that use at most a quarter of the bricks in the pool, before parts become larger.
+constexpr int most_small_parts = 8;
+
 ContentProgram program_of(const Content& content) {
     ContentProgram program = content.program();
     program.has_constant = content.has_constant();
@@ -61,14 +64,15 @@ void FrameLoop::require_lists() const {
 optics::Image FrameLoop::render(const View& view, Rows rows, int shown,
                                 const std::function<void(double)>& progress) {
     check_request(view, rows);
-    // A frame without a budget may evict what its earlier passes used: no ray goes back.
     frame_since_ = round_;
-    cache_.keep_since(std::nullopt);
+    double most_done = 0.0;
     return render_bands(view, rows, shown, [&](int row) {
         if (!progress) return Goal::nothing_missing();
         return Goal::nothing_missing([&, row](double done) {
+            // A part that is given up begins again.
             const double before = double(view.size.width) * (row - rows.first);
-            progress((before + done) / (double(view.size.width) * rows.count));
+            most_done = std::max(most_done, before + done);
+            progress(most_done / (double(view.size.width) * rows.count));
         });
     });
 }
@@ -135,7 +139,51 @@ void FrameLoop::run_bands(Band& band, Rows rows, int shown, std::uint32_t backgr
 
 Outcome FrameLoop::run_band(Band& band, const Goal& goal) {
     marcher_.begin_frame(band.view, cache_.tree(), cache_.pool(), band.is_blended, band.mix);
+    if (goal.end != Goal::End::nothing_missing) return run_part(band, goal);
+    run_parts(band, goal);
+    Outcome outcome;
+    outcome.done = true;
+    return outcome;
+}
+
+/// Runs a band without a budget: all of it at once, or, if what it uses passes the pools, in parts that use
+/// less, so that few bricks are produced again that had to go too early. If the pools do not hold what a
+/// single block uses, parts are of no use: then the rest is run at once, and what it used may go, because no
+/// ray goes back.
+void FrameLoop::run_parts(Band& band, const Goal& goal) {
+    const std::size_t blocks = marcher_.block_count();
+    bool may_give_up = true;
+    bool is_whole = true;  // begin_frame() has chosen all blocks
+    for (std::size_t first = 0; first < blocks;) {
+        const std::size_t rest = blocks - first;
+        const std::size_t count = may_give_up ? std::min(part_blocks_, rest) : rest;
+        if (!is_whole || count < blocks) marcher_.begin_part(first, count);
+        is_whole = count == blocks;
+        const Round since = round_;
+        if (run_part(band, goal, may_give_up).gave_up) {
+            may_give_up = count > 1;
+            small_parts_ = 0;
+            part_blocks_ = (count + 1) / 2;
+            continue;
+        }
+        const bool used_little =
+            4 * cache_.tree().bricks_used_since(since) <= cache_.tree().bricks_resident();
+        small_parts_ = used_little ? small_parts_ + 1 : 0;
+        if (small_parts_ == most_small_parts && part_blocks_ < blocks) {
+            part_blocks_ *= 2;
+            small_parts_ = 0;
+        }
+        first += count;
+    }
+}
+
+/// @param may_give_up  for patient goals: the part ends when something that it used would have to go for
+/// something
+///                     else that it needs. If false, that goes: no ray goes back, so the part comes to its
+///                     end.
+Outcome FrameLoop::run_part(Band& band, const Goal& goal, bool may_give_up) {
     const bool is_patient = goal.end == Goal::End::nothing_missing;
+    if (is_patient) cache_.keep_since(may_give_up ? std::optional(round_) : std::nullopt);
     PassKind kind = is_patient ? PassKind::patient : PassKind::progressive;
     Outcome outcome;
     for (;;) {
@@ -145,12 +193,18 @@ Outcome FrameLoop::run_band(Band& band, const Goal& goal) {
         if (is_patient && outcome.done) return outcome;
         // Some queries come only from the rays of stand-in passes, for example of shadow rays. Their answers
         // bring the next frame forward.
-        const bool answered = produce(band, pass, goal, outcome.answered).count() > 0;
+        const TileCache::Answer answer = produce(band, pass, goal, outcome.answered);
+        const bool answered = answer.count() > 0;
+        // A brick may be refused its room when it has been produced.
+        const bool is_refused = answer.refused != 0 || (!answered && !pass.queries.empty());
+        outcome.gave_up = may_give_up && is_refused;
+        if (outcome.gave_up) return outcome;
         outcome.answered = outcome.answered || answered;
         outcome.no_room = !answered && !pass.queries.empty();
         if (outcome.done) return outcome;
         if (goal.progress) {
-            const double waiting = pass.waiting_primary + 0.5 * pass.waiting_shadow;
+            const double waiting =
+                pass.waiting_primary + 0.5 * pass.waiting_shadow + marcher_.pixels_behind_part();
             goal.progress(double(marcher_.band_pixels()) - waiting);
         }
         if (kind != PassKind::progressive) continue;

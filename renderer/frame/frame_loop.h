@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -50,6 +51,7 @@ struct Outcome {
     bool done = false;      ///< no ray waits
     bool answered = false;  ///< at least one tile query was answered
     bool no_room = false;   ///< no tile query of the last pass could be answered
+    bool gave_up = false;   ///< what the part uses passes the pools
     /// Missing tiles that an ancestor stood in for; none if there was no stand-in pass.
     std::optional<std::uint32_t> stood_in;
 };
@@ -132,6 +134,8 @@ private:
     void run_bands(Band& band, Rows rows, int shown, std::uint32_t background,
                    const std::function<Goal(int)>& goal_of, optics::Image& image);
     Outcome run_band(Band& band, const Goal& goal);
+    void run_parts(Band& band, const Goal& goal);
+    Outcome run_part(Band& band, const Goal& goal, bool may_give_up = false);
     [[nodiscard]] PassResult run_pass(Band& band, PassKind kind);
     TileCache::Answer produce(Band& band, const PassResult& pass, const Goal& goal, bool any_answered);
     void find_tiles_below(Band& band, const std::vector<std::uint32_t>& parents);
@@ -143,6 +147,10 @@ private:
     TileQueries tile_queries_;
     Mix mix_;
     KeptPicture picture_;
+    /// Blocks of pixels of a part, in which bands of frames without a budget are marched if what more blocks
+    /// use passes the pools.
+    std::size_t part_blocks_ = std::numeric_limits<std::size_t>::max();
+    int small_parts_ = 0;  // parts in a row that used few of the bricks in the pool
     RefinementState refinement_;
     std::optional<PrefetchState> prefetch_state_;  // none before the first frame
     std::uint64_t prefetched_ = 0;                 // bricks prefetched since the last frame

@@ -9,9 +9,10 @@ namespace cairn::renderer {
 struct FrameStatistics {
     /// The whole frame.
     double milliseconds = 0.0;
-    /// Rays of the pixel blocks that may see anything; with a proxy, rays of the pixels that it covers.
+    /// Rays of the pixel blocks that may see anything; with a proxy, rays of the pixels that it covers. Rays
+    /// of a part that was given up (FrameLoop::run_parts()) are launched again.
     std::uint64_t rays_launched = 0;
-    /// Ray-marching passes; 0 if the picture was kept, or the content is empty.
+    /// Ray-marching passes; 0 if the picture was kept, or if no block of pixels may see anything.
     int passes = 0;
     std::uint64_t tile_queries = 0;  ///< misses that rays reported
     /// Bytes read back from the GPU: tile queries, and which bricks rays used.
@@ -43,7 +44,7 @@ struct FrameStatistics {
     bool converged = true;
     std::uint64_t bricks_resident = 0;  ///< bricks in the pool after the frame
     /// Resident bricks that rays read, or that were produced, since the frame began; with a budget, since the
-    /// first frame of this view began.
+    /// first frame of this view began; with several samples per pixel, since the last of them began.
     std::uint64_t bricks_used = 0;
     /// The most bricks that can be resident; packed bricks fill the pool's bytes before.
     std::uint64_t brick_slots = 0;

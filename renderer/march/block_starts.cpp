@@ -86,7 +86,8 @@ private:
         const double farthest = 1.0 / (depth + half_depth);
         const glm::dvec2 low = glm::min((place - reach) * nearest, (place - reach) * farthest);
         const glm::dvec2 high = glm::max((place + reach) * nearest, (place + reach) * farthest);
-        const glm::dvec2 first_pixel(-0.5, -0.5 - double(view_.first_row));
+        const glm::dvec2 first_pixel(-double(view_.pixel_x),
+                                     -double(view_.pixel_y) - double(view_.first_row));
         const glm::dvec2 low_pixel = glm::ceil((low + 1.0) * half_size_ + first_pixel - pixel_margin);
         const glm::dvec2 high_pixel = glm::floor((high + 1.0) * half_size_ + first_pixel + pixel_margin);
         return {glm::ivec2(glm::clamp(low_pixel, glm::dvec2(0.0), glm::dvec2(last + 1))),

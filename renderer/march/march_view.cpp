@@ -118,6 +118,8 @@ interop::MarchView march_view(const View& view, const ViewPlaces& places, int n)
     out.shown = int(view.show);
     out.casts_shadows = view.shadow.kind == ShadowQuality::Kind::none ? 0 : 1;
     out.shadow_cone_scale = float(view.shadow.pixel_error);
+    out.pixel_x = float(view.pixel_place.x);
+    out.pixel_y = float(view.pixel_place.y);
     set_area_light(out, view, places.voxel);
     const auto finite = [](const glm::vec3& v, float scalar) {
         return std::isfinite((v.x + v.y) + (v.z + scalar));

@@ -1,6 +1,7 @@
 #include "renderer/march/marcher.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -35,7 +36,7 @@ MarchOptions options_for(const TreeShape& shape, const MarchOptions& options) {
 }
 
 /// Pixels of the blocks that are in the picture.
-std::uint32_t pixels_of(const std::vector<interop::BlockStart>& starts, const glm::ivec2& size) {
+std::uint32_t pixels_of(std::span<const interop::BlockStart> starts, const glm::ivec2& size) {
     const int blocks = (size.x + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE;
     std::uint32_t pixels = 0;
     for (const interop::BlockStart& start : starts) {
@@ -45,6 +46,14 @@ std::uint32_t pixels_of(const std::vector<interop::BlockStart>& starts, const gl
         pixels += std::uint32_t(side.x * side.y);
     }
     return pixels;
+}
+
+/// The bits of two numbers in turn: blocks whose numbers are near to each other lie near to each other.
+std::uint64_t morton_number(unsigned x, unsigned y) {
+    std::uint64_t number = 0;
+    for (unsigned bit = 0; bit < 32; ++bit)
+        number |= std::uint64_t(x >> bit & 1U) << (2 * bit) | std::uint64_t(y >> bit & 1U) << (2 * bit + 1);
+    return number;
 }
 
 }  // namespace
@@ -116,20 +125,38 @@ void Marcher::begin_frame(const interop::MarchView& view, const Tree& tree, cons
         ray_view.has_shadow_ends = 1;
     }
     view_.write(0, &ray_view, sizeof(ray_view));
-    std::vector<interop::BlockStart> starts =
-        options_.block_starts ? block_starts(view, tree, is_blended) : all_block_starts(view);
-    if (mix.mesh_nearest != 0) add_empty_blocks(view, starts);
-    start_count_ = starts.size();
-    first_rays_ = pixels_of(starts, size_);
-    if (starts_.size_bytes() < starts.size() * sizeof(starts[0]))
-        starts_ = gl::Buffer(capacity_ * sizeof(starts[0]), "block starts");
-    starts_.write(0, starts.data(), starts.size() * sizeof(starts[0]));
+    block_starts_ = options_.block_starts ? block_starts(view, tree, is_blended) : all_block_starts(view);
+    are_in_order_ = false;
+    if (mix.mesh_nearest != 0) add_empty_blocks(view, block_starts_);
+    if (starts_.size_bytes() < block_starts_.size() * sizeof(interop::BlockStart))
+        starts_ = gl::Buffer(capacity_ * sizeof(interop::BlockStart), "block starts");
     image_.fill(0, pixels * sizeof(std::uint32_t), view.background_pixel);
-    first_pass_ = true;
     show_tree_ = view.shown == SHOW_LEVELS || view.shown == SHOW_BRICKS;
+    begin_part(0, block_starts_.size());
+}
+
+void Marcher::begin_part(std::size_t first, std::size_t count) {
+    if (count < block_starts_.size() && !are_in_order_) {
+        const auto blocks = unsigned((size_.x + PIXEL_BLOCK_SIDE - 1) / PIXEL_BLOCK_SIDE);
+        std::sort(block_starts_.begin(), block_starts_.end(), [&](const auto& a, const auto& b) {
+            return morton_number(a.block % blocks, a.block / blocks) <
+                   morton_number(b.block % blocks, b.block / blocks);
+        });
+        are_in_order_ = true;
+    }
+    part_first_ = first;
+    part_count_ = count;
+    const std::span<const interop::BlockStart> part = std::span(block_starts_).subspan(first, count);
+    first_rays_ = pixels_of(part, size_);
+    if (!part.empty()) starts_.write(0, part.data(), part.size_bytes());
+    first_pass_ = true;
     pauses_ = 0;
     waiting_primary_ = 0;
     waiting_shadow_ = 0;
+}
+
+std::uint32_t Marcher::pixels_behind_part() const {
+    return pixels_of(std::span(block_starts_).subspan(part_first_ + part_count_), size_);
 }
 
 void Marcher::set_windows(const std::vector<interop::MarchWindow>& windows) {
@@ -178,7 +205,7 @@ PassResult Marcher::run_pass(Round round, const Tree& tree, const BrickPool& poo
     // Shadow rays that waited go first: those which this pass starts are appended behind what still waits.
     if (old_shadow != 0) dispatch({program(RayKind::shadow, kind), true, old_shadow}, round, pool, kind);
     const std::uint32_t primary =
-        first_pass_ ? std::uint32_t(start_count_ * PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) : waiting_primary_;
+        first_pass_ ? std::uint32_t(part_count_ * PIXEL_BLOCK_SIDE * PIXEL_BLOCK_SIDE) : waiting_primary_;
     if (primary != 0) dispatch({program(RayKind::primary, kind), false, primary}, round, pool, kind);
     const bool began = first_pass_;
     first_pass_ = false;

@@ -41,7 +41,7 @@ struct PassResult {
     std::uint32_t waiting_shadow = 0;
     /// Missing tiles that an ancestor stood in for.
     std::uint32_t stood_in = 0;
-    /// Primary rays that began. The first pass of a band begins them all, unless there is a proxy.
+    /// Primary rays that began. The first pass of a part begins them all, unless there is a proxy.
     std::uint32_t launched = 0;
     /// Tile queries, each once. Patient passes do not count the rays that ask.
     std::vector<TileQuery> queries;
@@ -84,6 +84,13 @@ public:
     void begin_frame(const interop::MarchView& view, const Tree& tree, const BrickPool& pool, bool is_blended,
                      const MixTextures& mix = {});
 
+    /// Blocks of PIXEL_BLOCK_SIDE^2 pixels of the frame whose rays may see anything.
+    [[nodiscard]] std::size_t block_count() const { return block_starts_.size(); }
+    /// Chooses the blocks whose rays begin in the next pass; the rays of other blocks are forgotten, if any
+    /// wait. begin_frame() chooses all blocks. Blocks that are near to each other in the picture have numbers
+    /// that are near to each other.
+    void begin_part(std::size_t first, std::size_t count);
+
     /// Sets the windows of a tree that has some. Call it before each pass, since tiles come and go.
     void set_windows(const std::vector<interop::MarchWindow>& windows);
 
@@ -97,6 +104,8 @@ public:
     [[nodiscard]] bool shows_surface() const { return content_.is_surface(); }
 
     [[nodiscard]] int band_pixels() const { return size_.x * size_.y; }
+    /// Pixels of the blocks behind those of the part that began last.
+    [[nodiscard]] std::uint32_t pixels_behind_part() const;
 
     /// The band's picture, RGBA8, row after row.
     [[nodiscard]] std::vector<std::uint8_t> read_image() const;
@@ -127,8 +136,11 @@ private:
     gl::Buffer shadow_sums_;  ///< empty until a frame has soft shadows
     gl::Buffer image_;
     gl::Buffer starts_;
-    std::size_t start_count_ = 0;
-    std::uint32_t first_rays_ = 0;  // primary rays of the first pass
+    std::vector<interop::BlockStart> block_starts_;
+    bool are_in_order_ = false;   // starts of blocks that are near to each other stand together
+    std::size_t part_first_ = 0;  // blocks of the part
+    std::size_t part_count_ = 0;
+    std::uint32_t first_rays_ = 0;  // primary rays of the part's first pass
     MixTextures mix_;
     glm::ivec2 size_{0};
     std::size_t capacity_ = 0;  // pixels that the buffers have room for

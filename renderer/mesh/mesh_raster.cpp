@@ -34,6 +34,7 @@ struct MeshVariant {
 struct Strip {
     glm::vec3 eye, forward, right, up;
     float skipped;
+    glm::vec2 pixel_place;
     glm::ivec2 picture;
     ViewSpace space;
     int first_row;
@@ -45,9 +46,11 @@ Strip strip_of(const interop::MarchView& view, const ViewSpace& space, int row, 
     const glm::ivec2 picture(view.width, view.height);
     const int most = std::max(strip_pixels / picture.x, 1);
     const int first = row / most * most;
-    return {view.eye, view.forward, view.right,
-            view.up,  view.skipped, picture,
-            space,    first,        std::min(most, picture.y - first)};
+    return {view.eye,     view.forward,
+            view.right,   view.up,
+            view.skipped, {view.pixel_x, view.pixel_y},
+            picture,      space,
+            first,        std::min(most, picture.y - first)};
 }
 
 /// Inverts pixel_ray(): a point `p` from the moved eye is x * w * right - y * w * up + along * forward, with
@@ -69,6 +72,10 @@ interop::MeshView mesh_view(const Strip& strip, const voxelizer::Grid& lattice) 
     out.nearest = side * MESH_NEAREST_PART;
     out.along = rows[2];
     out.skipped = double(strip.skipped);
+    // The driver draws what lies in the middle of a pixel.
+    const glm::dvec2 beside_middle = glm::dvec2(strip.pixel_place) - 0.5;
+    out.moved_across = -2.0 * beside_middle.x / strip.picture.x;
+    out.moved_down = -2.0 * beside_middle.y / strip.picture.y;
     return out;
 }
 
@@ -167,6 +174,8 @@ void MeshRaster::Impl::begin(const Strip& strip, const MeshTargets& targets) {
     view.right = strip.right;
     view.up = strip.up;
     view.skipped = strip.skipped;
+    view.pixel_x = strip.pixel_place.x;
+    view.pixel_y = strip.pixel_place.y;
     view.width = strip.picture.x;
     view.height = strip.picture.y;
     view.first_row = strip.first_row;

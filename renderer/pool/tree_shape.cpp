@@ -69,23 +69,37 @@ void check_factors(int n, int m) {
     }
 }
 
+void check_voxels(int voxels, int m, int most) {
+    if (voxels >= m && voxels <= most) return;
+    throw Error(Fault::usage, "maximum resolution",
+                fmt::format("{} is not between {} (one brick) and {}", voxels, m, most));
+}
+
 }  // namespace
 
-TreeShape make_tree_shape(int n, int m, int max_resolution, bool with_mips) {
+TreeShape make_tree_shape_within(int n, int m, int voxels) {
+    check_factors(n, m);
+    check_voxels(voxels, m, 1 << MAX_RESOLUTION_BITS);
+    TreeShape shape{.n = n, .m = m, .max_level = 0};
+    while (std::int64_t(shape.resolution()) * n <= voxels)
+        ++shape.max_level;
+    return shape;
+}
+
+int most_voxels_across(int n, int m) {
+    return make_tree_shape_within(n, m, 1 << MAX_RESOLUTION_BITS).resolution();
+}
+
+TreeShape make_tree_shape(int n, int m, int voxels, bool with_mips) {
     check_factors(n, m);
     if (with_mips && n == 3) {
         throw Error(Fault::usage, "tree", "bricks have no mip levels with N = 3",
                     "choose N = 2, 4 or 8, or leave the mips out");
     }
-    if (max_resolution < m || max_resolution > 1 << MAX_RESOLUTION_BITS) {
-        throw Error(Fault::usage, "maximum resolution",
-                    fmt::format("{} is not between {} (one brick) and {}", max_resolution, m,
-                                1 << MAX_RESOLUTION_BITS));
-    }
-    TreeShape shape{.n = n, .m = m, .max_level = 0};
+    check_voxels(voxels, m, most_voxels_across(n, m));
+    TreeShape shape = make_tree_shape_within(n, m, voxels);
+    if (shape.resolution() < voxels) ++shape.max_level;
     shape.mips = with_mips ? shape.n_shift() : 0;
-    while (std::int64_t(shape.resolution()) * n <= max_resolution)
-        ++shape.max_level;
     return shape;
 }
 

@@ -90,15 +90,24 @@ struct TreeShape {
     [[nodiscard]] gl::Defines defines(bool has_color) const;
 };
 
-/// The deepest shape with at most `max_resolution` voxels across the root cube.
+/// The least shape with at least `voxels` voxels across the root cube. A root cube has m n^k voxels across,
+/// so that a content that is less than m n^k voxels wide lies in its low corner.
 /// @param with_mips  bricks hold mip levels up to the size of their parent's voxels. Not with n = 3, which
 ///                   cuts voxels in thirds and not in halves.
-/// @throws Error (Fault::usage) if n, m or the resolution is out of range; names the range.
-[[nodiscard]] TreeShape make_tree_shape(int n, int m, int max_resolution, bool with_mips = false);
+/// @throws Error (Fault::usage) if n, m or the voxels are out of range; names the range.
+[[nodiscard]] TreeShape make_tree_shape(int n, int m, int voxels, bool with_mips = false);
+
+/// The deepest shape with at most `voxels` voxels across the root cube, for contents that fill that cube.
+/// @throws Error (Fault::usage) if n, m or the voxels are out of range; names the range.
+[[nodiscard]] TreeShape make_tree_shape_within(int n, int m, int voxels);
 
 /// A shape of any depth, whose finest voxels may be 2^-60 of the root cube.
 /// @throws Error (Fault::usage) if n, m or the level is out of range; names the range.
 [[nodiscard]] TreeShape make_deep_tree_shape(int n, int m, int max_level);
+
+/// The most voxels across a root cube whose rays count them one by one: m n^k for the greatest k that
+/// make_tree_shape() takes.
+[[nodiscard]] int most_voxels_across(int n, int m);
 
 /// The most levels under the root that make_deep_tree_shape() takes for n and m.
 [[nodiscard]] int deepest_level(int n, int m);
@@ -110,7 +119,9 @@ struct TreeOptions {
     int n = 4;
     /// Voxels of a brick per axis, without the border: 8, 16, 32 or 64; 27 or 81 with n = 3.
     int m = 16;
-    /// Voxels across the root cube that rays may ask for.
+    /// Voxels across the content that rays may ask for, in [m, most_voxels_across()]. Surfaces have exactly
+    /// as many across their grid (voxelizer::grid_around()), and at most 2^19 across the root cube; volumes
+    /// and sets at most as many (ContentSource::finest_resolution()).
     int max_resolution = 8192;
     /// Bricks hold mip levels, for LevelOfDetail::Kind::blended, and take about a third more memory. For
     /// surfaces only, and not with n = 3.
@@ -121,6 +132,7 @@ struct TreeOptions {
     bool operator==(const TreeOptions&) const = default;
 };
 
+/// make_tree_shape(), or make_deep_tree_shape() if `max_level` is given.
 /// @throws Error (Fault::usage) if an option is out of range, or if a tree with `max_level` has mips.
 [[nodiscard]] TreeShape tree_shape_of(const TreeOptions& options);
 

@@ -89,9 +89,13 @@ void TileCache::settle(const TileQuery& query, bool may_stay, Answer& answer) {
     const bool needs_brick =
         !for_children || (content_->has_low_frequency() && !tree_.was_produced(query.entry));
     if (needs_brick) {
-        answer.bricks += request(query.entry, may_stay) ? 1 : 0;
+        if (!tree_.wants_brick(query.entry)) return;
+        const bool has_room = request(query.entry, may_stay);
+        (has_room ? answer.bricks : answer.refused) += 1;
     } else if (subdivide(query.entry)) {
         answer.parents.push_back(query.entry);
+    } else {
+        ++answer.refused;
     }
 }
 
@@ -119,7 +123,6 @@ bool TileCache::subdivide(std::uint32_t entry) {
 
 /// Gives the tile a slot, if there is one, to be filled by produce_requests().
 bool TileCache::request(std::uint32_t entry, bool may_stay) {
-    if (!tree_.wants_brick(entry)) return false;
     const std::optional<int> slot = tree_.add_brick(entry, may_stay);
     if (!slot) return false;
     // Before the slot gets other room: the brick that had to go is still where the slot's was.

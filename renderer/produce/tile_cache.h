@@ -39,6 +39,7 @@ public:
     struct Answer {
         std::vector<std::uint32_t> parents;  ///< entries that got children
         std::size_t bricks = 0;              ///< tiles that got a slot for their brick
+        std::size_t refused = 0;             ///< queries that found no room
         [[nodiscard]] std::size_t count() const { return parents.size() + bricks; }
     };
 

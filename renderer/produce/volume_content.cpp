@@ -129,14 +129,13 @@ VolumeShape make_volume_shape(const FieldFrame& frame, int n, int m, int max_res
                     fmt::format("its levels are {} apart, those of the tree {}", frame.n, n),
                     "make the field for the tree's N");
     }
-    VolumeShape shape{make_tree_shape(n, m, max_resolution), 0};
     const std::int64_t longest = std::max({frame.size.x, frame.size.y, frame.size.z});
-    std::int64_t root_side = m;
-    int depth = 0;
-    for (; root_side < longest; ++depth)
-        root_side *= n;
-    shape.finest_coarseness = std::max(depth - shape.tree.max_level, 0);
-    shape.tree.max_level = std::min(depth, shape.tree.max_level);
+    const std::int64_t most = std::min(max_resolution, most_voxels_across(n, m));
+    VolumeShape shape{make_tree_shape_within(n, m, max_resolution), 0};
+    while ((longest - 1) / shape.finest_voxel_side() + 1 > most)
+        ++shape.finest_coarseness;
+    const std::int64_t voxels = (longest - 1) / shape.finest_voxel_side() + 1;
+    shape.tree = make_tree_shape(n, m, int(std::max<std::int64_t>(voxels, m)));
     return shape;
 }
 

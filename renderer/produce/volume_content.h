@@ -41,8 +41,8 @@ struct VolumeShape {
     [[nodiscard]] std::int64_t finest_voxel_side() const;
 };
 
-/// The least tree that holds the field at its finest, but with at most `max_resolution` voxels across the
-/// root cube.
+/// The least tree that holds the field at its finest, but with at most `max_resolution` voxels along its
+/// longest axis: voxels are as many times coarser as a whole power of n makes them.
 /// @throws Error (Fault::usage) as make_tree_shape() does, and if the field is made for another n.
 [[nodiscard]] VolumeShape make_volume_shape(const FieldFrame& frame, int n, int m, int max_resolution);
 

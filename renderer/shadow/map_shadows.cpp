@@ -42,6 +42,7 @@ glm::dmat4 clip_from_world(const View& view, const scenes::Bounds& bounds) {
 void check_map_view(const View& view) {
     check_view(view);
     check_shows_surface(view);
+    check_one_ray(view);
     if (view.anchor) refuse("it has no tree for a camera to be anchored in", "give the camera in the world");
     if (view.shadow.kind != ShadowQuality::Kind::rays)
         refuse("its shadow is that of the whole light", "ask for a shadow by rays, or choose another method");

@@ -124,6 +124,7 @@ void PyramidShadows::move_to(double seconds) {
 ShadowPicture PyramidShadows::render(const View& view, const ShadowRequest& request) {
     Impl& impl = *impl_;
     check_view(view);
+    check_one_ray(view);
     check_pyramid_view(view);
     const auto start = Clock::now();
     ShadowPicture picture;

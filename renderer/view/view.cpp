@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
@@ -21,6 +22,39 @@ glm::vec3 shown_level_color(double level) {
         return float(0.5 + 0.5 * std::cos(LEVEL_HUE * level + phase));
     };
     return {channel(LEVEL_PHASE_R), channel(LEVEL_PHASE_G), channel(LEVEL_PHASE_B)};
+}
+
+namespace {
+
+/// Point of a (0, 2)-sequence (Sobol 1967), in [0, 1).
+glm::dvec2 sobol_point(int number) {
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+    std::uint32_t x_bit = 0x80000000U;
+    std::uint32_t y_bits = 0x80000000U;
+    for (auto rest = std::uint32_t(number); rest != 0; rest >>= 1U, x_bit >>= 1U, y_bits ^= y_bits >> 1U) {
+        if ((rest & 1U) == 0) continue;
+        x ^= x_bit;
+        y ^= y_bits;
+    }
+    return glm::dvec2(x, y) * 0x1p-32;
+}
+
+}  // namespace
+
+glm::dvec2 sample_place(int sample, int count) {
+    glm::dvec2 sum(0.0);
+    for (int i = 0; i < count; ++i)
+        sum += sobol_point(i);
+    const glm::dvec2 middle = sum / double(count);
+    // Of other numbers than powers of two, some points may have to come nearer to the middle to stay in the
+    // pixel.
+    glm::dvec2 farthest(0.0);
+    for (int i = 0; i < count; ++i)
+        farthest = glm::max(farthest, glm::abs(sobol_point(i) - middle));
+    constexpr double most = 0.4999;
+    const glm::dvec2 scale = most / glm::max(farthest, glm::dvec2(most));
+    return 0.5 + scale * (sobol_point(sample) - middle);
 }
 
 bool is_soft(const View& view) {
@@ -76,9 +110,19 @@ void check_view(const View& view) {
         fail(fmt::format("a pixel error of {}", view.detail.pixel_error),
              "choose more than 0 pixels; 1 is the default");
     }
+    if (view.samples < 1 || view.samples > MAX_SAMPLES)
+        fail(fmt::format("{} samples per pixel", view.samples), fmt::format("choose 1 to {}", MAX_SAMPLES));
+    if (!glm::all(glm::greaterThanEqual(view.pixel_place, glm::dvec2(0.0))) ||
+        !glm::all(glm::lessThan(view.pixel_place, glm::dvec2(1.0))))
+        fail("rays that stand outside their pixels", "choose a place in [0, 1); 0.5 is the middle");
     optics::check_camera(view.camera);
     optics::check_light(view.light);
     check_shadow(view.shadow);
+}
+
+void check_one_ray(const View& view) {
+    if (view.samples != 1 || view.pixel_place != glm::dvec2(0.5))
+        fail("rays beside the middle of their pixels", "choose one sample, in the middle");
 }
 
 void check_view(const View& view, const TreeShape& shape) {

@@ -56,6 +56,13 @@ struct LevelOfDetail {
     bool operator==(const LevelOfDetail&) const = default;
 };
 
+constexpr int MAX_SAMPLES = 256;
+
+/// Place in its pixel of one of `count` samples, as View::pixel_place: the first points of a (0, 2)-sequence
+/// (Sobol 1967), moved so that their middle is the pixel's. Of a power of two, each stands for an equal part
+/// of the pixel; four are a rotated grid.
+[[nodiscard]] glm::dvec2 sample_place(int sample, int count);
+
 constexpr double MIN_SHADOW_PIXEL_ERROR = 1.0 / 64.0;
 constexpr double MAX_SHADOW_PIXEL_ERROR = 64.0;
 
@@ -101,6 +108,12 @@ struct View {
     ShadowQuality shadow;
     LevelOfDetail detail;
     Show show = Show::surface;
+    /// Rays per pixel, in [1, MAX_SAMPLES]: a pixel is the mean of their colours, in linear light. They stand
+    /// at sample_place(). Pictures of Renderer::render() without a budget alone take more than one.
+    int samples = 1;
+    /// Where a pixel's ray stands in the pixel, from its top left corner, in pixels: in [0, 1). Not read with
+    /// more than one sample.
+    glm::dvec2 pixel_place{0.5};
     /// Linear colour of pixels that show nothing else.
     glm::vec3 background{0.80F, 0.84F, 0.90F};
     /// If set, the camera and the light are not in world coordinates, but count from the low corner of this
@@ -123,6 +136,10 @@ void check_view(const View& view);
 /// Checks all fields of a view, and that the tree has the tile of its anchor.
 /// @throws Error (Fault::usage) that names the field and its range.
 void check_view(const View& view, const TreeShape& shape);
+
+/// For renderers whose rays stand in the middle of their pixels.
+/// @throws Error (Fault::usage) if the view asks for another place, or for several samples.
+void check_one_ray(const View& view);
 
 /// Does the view ask for shadows of more than the middle of the light?
 [[nodiscard]] bool is_soft(const View& view);

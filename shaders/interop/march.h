@@ -97,7 +97,8 @@ struct MarchView {
     int is_soft;
     int is_cones;              // 1: soft shadow rays are cones
     float shadow_cone_scale;   // width of shadow rays, in units of their pixels' cones
-    int padding1, padding2, padding3;
+    float pixel_x, pixel_y;    // place of a pixel's ray in the pixel, from its top left corner
+    int padding1;
 };
 
 // A ray between two passes. shaders/march/ray_state.glsl has the functions that read and write it.

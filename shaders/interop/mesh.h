@@ -36,11 +36,13 @@ struct MeshView {
     dvec3 origin;
     double lattice_unit;
     dvec3 across;          // row of the matrix that gives x * w
-    double padding;
+    double moved_across;   // by how much the picture is moved to the right, in halves of its width
     dvec3 down;            // row of the matrix that gives y * w
     double nearest;        // least w that is drawn
     dvec3 along;           // row that gives the distance along MarchView.forward
     double skipped;        // MarchView.skipped
+    double moved_down;     // by how much the picture is moved downwards, in halves of its height
+    double padding1, padding2, padding3;
 };
 
 // A triangle, relative to MarchView.eye and in units of the MarchView.
@@ -58,7 +60,7 @@ struct MeshTriangle {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(MeshView) == 128, "GLSL sees another layout");
+static_assert(sizeof(MeshView) == 160, "GLSL sees another layout");
 static_assert(offsetof(MeshView, down) == 64, "GLSL sees another layout");
 static_assert(sizeof(MeshTriangle) == 64, "GLSL sees another layout");
 }  // namespace cairn::interop

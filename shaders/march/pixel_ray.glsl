@@ -17,7 +17,7 @@ vec3 eye_there() { return view.eye; }
 // `pixel` counts from the band's first.
 PixelRay pixel_ray(ivec2 pixel) {
     const vec2 size = vec2(view.width, view.height);
-    const vec2 place = (vec2(pixel + ivec2(0, view.first_row)) + 0.5) / size * 2.0 - 1.0;
+    const vec2 place = (vec2(pixel + ivec2(0, view.first_row)) + vec2(view.pixel_x, view.pixel_y)) / size * 2.0 - 1.0;
     const vec3 across = place.x * view.right - place.y * view.up;
     const float slant = length(view.forward + across);
     PixelRay ray;

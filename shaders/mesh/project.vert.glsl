@@ -12,5 +12,6 @@ void main() {
     // Clipping at -w <= z is clipping at w >= nearest. z has no other use, because fragments compute their
     // distance.
     const double z = w - 2.0lf * mesh_view.nearest;
-    gl_Position = vec4(dvec4(dot(mesh_view.across, p), dot(mesh_view.down, p), z, w));
+    const dvec2 moved = w * dvec2(mesh_view.moved_across, mesh_view.moved_down);
+    gl_Position = vec4(dvec4(dvec2(dot(mesh_view.across, p), dot(mesh_view.down, p)) + moved, z, w));
 }

@@ -95,6 +95,7 @@ std::string RandomTexts::of(const std::string& option) {
         {"--brick-pool", [&] { return whole(1, 4096); }},
         {"--brick-cache", [&] { return whole(0, 4096); }},
         {"--pixel-error", [&] { return number(0.001, 1000.0); }},
+        {"--samples", [&] { return whole(1, 256); }},
         {"--tree-n", [&] { return whole(2, 8); }},
         {"--brick-m", [&] { return whole(8, 81); }},
         {"--traversal",

@@ -74,8 +74,8 @@ Picture picture_of(const ScratchFolder& folder, const std::string& scene,
 
 TEST(AppRender, WritesAPictureOfTheSceneAndItsFigures) {
     const ScratchFolder folder;
-    const auto figures =
-        cairn_json({"render", "builtin:knot", "--size", "160x120", "-o", folder.file("knot.png")});
+    const auto figures = cairn_json(
+        {"render", "builtin:knot", "--size", "160x120", "--measure", "-o", folder.file("knot.png")});
     for (const char* key :
          {"frame_ms", "first_frame_ms", "passes", "bricks_produced", "bricks_resident", "node_pool_bytes",
           "brick_pool_bytes", "peak_rss_bytes", "driver", "load_ms", "context_ms", "setup_ms", "write_ms"}) {
@@ -198,20 +198,36 @@ TEST(AppRender, WhatIsNotAsAskedForIsTold) {
         EXPECT_NE(text.find(part), std::string::npos) << text;
         EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
     };
-    expect_told({"--max-resolution", "1000"}, "at most 256 voxels across");
-    expect_told({"--max-resolution", "1000", "--tree-n", "2", "--brick-m", "8"}, "at most 512 voxels across");
     expect_told({"--shadow", "soft"}, "the light has no extent");
     expect_told({"--shadow", "soft", "--light", "0,2,0"}, "the light has no extent");
     expect_told({"--cones"}, "the light has no extent");
     expect_told({"--shadow", "none", "--cones"}, "there are no shadows");
     for (const std::vector<std::string>& met : {std::vector<std::string>{},
-                                                {"--max-resolution", "1024"},
+                                                {"--max-resolution", "1000"},
                                                 {"--shadow", "soft", "--light", "0,2,0,0.3"},
                                                 {"--cones", "--light", "0,2,0,0.3"}})
         EXPECT_EQ(told(met), "");
     const Json figures = cairn_json({"render", "builtin:cornell", "--size", "16x12", "--max-resolution",
                                      "1000", "-o", folder.file("a.png")});
-    EXPECT_EQ(figures.value("finest_resolution", 0), 256) << figures;
+    EXPECT_EQ(figures.value("finest_resolution", 0), 1000) << figures;
+    const Answer sponge = cairn({"render", "builtin:sponge", "--size", "16x12", "--max-resolution", "1000",
+                                 "-o", folder.file("a.png"), "--json", "-"});
+    EXPECT_NE(sponge.err.find("at most 729 voxels across"), std::string::npos) << sponge;
+    EXPECT_EQ(sponge.json().value("finest_resolution", 0), 729) << sponge;
+}
+
+TEST(AppRender, FramesAreTimedIfThatIsAskedFor) {
+    const ScratchFolder folder;
+    const std::vector<std::string> run = {"render", "builtin:cornell",   "--size", "16x12",
+                                          "-o",     folder.file("a.png")};
+    EXPECT_FALSE(cairn_json(run).contains("frame_ms"));
+    std::vector<std::string> measured = run;
+    measured.emplace_back("--measure");
+    EXPECT_TRUE(cairn_json(measured).contains("frame_ms"));
+    measured.emplace_back("--quiet");
+    const Answer nothing_tells = cairn(measured);
+    EXPECT_EQ(nothing_tells.code, 2) << nothing_tells;
+    EXPECT_NE(nothing_tells.err.find("--measure"), std::string::npos) << nothing_tells;
 }
 
 /// Output of a run of `cairn render`.

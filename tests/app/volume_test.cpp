@@ -60,7 +60,7 @@ TEST_F(VolumeCommand, RenderMakesAPictureAndCountsVoxels) {
 
 TEST_F(VolumeCommand, AResolutionThatIsNotMetIsTold) {
     // 64 voxels across, of which a level has 4 times as many as the one above it.
-    const std::pair<const char*, int> finest[] = {{"64", 64}, {"63", 16}, {"16", 16}};
+    const std::pair<const char*, int> finest[] = {{"64", 64}, {"63", 16}, {"17", 16}, {"16", 16}};
     for (const auto& [asked, across] : finest) {
         const Answer answer = cairn({"render", path("field.mha"), "--size", "16x12", "--max-resolution",
                                      asked, "-o", path("field.png"), "--json", "-"});

@@ -1,8 +1,12 @@
 #include "optics/srgb.h"
 
 #include <cmath>
+#include <cstdint>
 
 #include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "optics/image_mean.h"
 
 namespace cairn::optics {
 namespace {
@@ -44,6 +48,31 @@ TEST(Srgb, ColoursAreEncodedChannelByChannel) {
     EXPECT_EQ(int(color.r), 0);
     EXPECT_EQ(int(color.g), 128) << "half of the steps for less than a quarter of the light";
     EXPECT_EQ(int(color.b), 255);
+}
+
+TEST(ImageMean, OfTwoPicturesIsThatOfTheirLight) {
+    Image a{256, 256, {}};
+    Image b = a;
+    for (int i = 0; i < 256 * 256; ++i) {
+        a.rgba.insert(a.rgba.end(), 4, std::uint8_t(i % 256));
+        b.rgba.insert(b.rgba.end(), 4, std::uint8_t(i / 256));
+    }
+    ImageMean mean;
+    EXPECT_TRUE(mean.mean().rgba.empty());
+    mean.add(a);
+    EXPECT_EQ(mean.mean().rgba, a.rgba) << "a single picture is changed";
+    mean.add(b);
+    EXPECT_EQ(mean.count(), 2);
+    const Image both = mean.mean();
+    for (std::size_t k = 0; k < both.rgba.size(); ++k) {
+        const double x = a.rgba[k] / 255.0;
+        const double y = b.rgba[k] / 255.0;
+        const bool is_alpha = k % 4 == 3;
+        const double light = is_alpha ? 0.5 * (x + y) : 0.5 * (linear_from_srgb(x) + linear_from_srgb(y));
+        ASSERT_NEAR(both.rgba[k], 255.0 * (is_alpha ? light : srgb_from_linear(light)), 0.5001)
+            << int(a.rgba[k]) << " and " << int(b.rgba[k]);
+    }
+    EXPECT_THROW(mean.add(Image{1, 1, {0, 0, 0, 0}}), Error);
 }
 
 }  // namespace

@@ -2,17 +2,20 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "renderer/open_content.h"
 #include "scenes/load.h"
 #include "scenes/snapshot.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/march_twin.h"
 #include "tests/support/test_scenes.h"
 #include "tests/support/voxel_renderer.h"
+#include "voxelizer/grid.h"
 
 namespace cairn::test {
 namespace {
@@ -84,6 +87,32 @@ TEST_P(TreeShapes, PictureEqualsThePlainCpuMarchOfTheSameBits) {
         const Difference difference = compare(ours, twin, 2);
         EXPECT_LE(difference.pixels_over, ours.rgba.size() / 4 / 200) << difference.first;
     }
+}
+
+TEST_F(RendererTest, AResolutionIsExactWhateverTheTreesRootHasRoomFor) {
+    constexpr int resolution = 100;
+    const scenes::Scene scene = ball_over_floor();
+    const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
+    const View view = finest_view(scene);
+    const auto picture_of = [&](int n, int m, int voxels) {
+        return make_renderer(scene, {.tree = {.n = n, .m = m, .max_resolution = voxels}}).render(view).image;
+    };
+    const optics::Image expected = picture_of(2, 8, resolution);
+    const voxelizer::Grid wanted = voxelizer::grid_around(snapshot.bounds, resolution);
+    for (const auto& [n, m, root] : {std::tuple{2, 8, 128}, {4, 16, 256}, {8, 8, 512}, {3, 27, 243}}) {
+        const auto where = fmt::format("N = {}, M = {}", n, m);
+        const auto content =
+            renderer::surface_content(scene, snapshot, {.n = n, .m = m, .max_resolution = resolution});
+        EXPECT_EQ(content->grid().origin, wanted.origin) << where;
+        EXPECT_EQ(content->grid().voxel_size, wanted.voxel_size) << where;
+        EXPECT_EQ(content->grid().resolution, glm::ivec3(root)) << where;
+        if (n == 3) continue;  // voxels without marks look otherwise
+        // Roots have lattices of their own, to which vertices are rounded.
+        const Difference difference = compare(picture_of(n, m, resolution), expected, 2);
+        EXPECT_LE(difference.pixels_over, expected.rgba.size() / 4 / 500)
+            << where << ": " << difference.first;
+    }
+    EXPECT_GT(compare(picture_of(4, 16, 64), expected, 2).pixels_over, expected.rgba.size() / 4 / 150);
 }
 
 TEST_P(TreeShapes, PictureFromManyBricksEqualsTheOneFromADenseGrid) {

@@ -20,7 +20,9 @@ struct Shape {
 
 class TileListsTest : public ::testing::TestWithParam<Shape> {
 protected:
-    [[nodiscard]] static TreeShape shape() { return make_tree_shape(GetParam().n, GetParam().m, 4096); }
+    [[nodiscard]] static TreeShape shape() {
+        return make_tree_shape_within(GetParam().n, GetParam().m, 4096);
+    }
 };
 
 /// A surface without the triangles that miss the root cube, as build_surface() makes it.

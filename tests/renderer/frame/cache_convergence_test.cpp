@@ -58,7 +58,8 @@ protected:
         behind_.camera.eye = 2.0 * view_.camera.target - view_.camera.eye;
     }
 
-    [[nodiscard]] Renderer make(const Settings& options = {}) const {
+    [[nodiscard]] Renderer make(Settings options = {}) const {
+        options.tree.max_resolution = 4096;  // with levels of 4096 / 4^k voxels, of which the views show some
         return voxel_renderer(scene_, scenes::take_snapshot(scene_), options);
     }
     /// A renderer whose pool holds a share of the bricks that a view needs, and is full of bricks of other

@@ -27,7 +27,8 @@ protected:
         view_.camera = optics::framing_camera(scenes::take_snapshot(scene_).bounds, 160.0 / 120.0);
     }
 
-    [[nodiscard]] Renderer make(const Settings& options = {}) const {
+    [[nodiscard]] Renderer make(Settings options = {}) const {
+        options.tree.max_resolution = 4096;  // with levels of 4096 / 4^k voxels, of which the view shows some
         return voxel_renderer(scene_, scenes::take_snapshot(scene_), options);
     }
 

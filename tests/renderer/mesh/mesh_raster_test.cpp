@@ -42,6 +42,8 @@ interop::MarchView march_view(const View& view, const ViewSpace& space, double s
     out.up = glm::vec3(up * half);
     out.width = view.size.width;
     out.height = view.size.height;
+    out.pixel_x = float(view.pixel_place.x);
+    out.pixel_y = float(view.pixel_place.y);
     return out;
 }
 

@@ -30,7 +30,7 @@ TEST_F(BrickPoolTest, TakesNoMoreBytesThanAskedForAndLeavesFewUnused) {
     Random random(31);
     for (const int m : {8, 16, 32, 64}) {
         for (const bool has_color : {false, true}) {
-            const TreeShape shape = make_tree_shape(4, m, 8192);
+            const TreeShape shape = make_tree_shape_within(4, m, 8192);
             const std::size_t slot = slot_bytes(m, has_color);
             std::vector<std::size_t> sizes;
             for (std::size_t count = 1; count <= 12; ++count)
@@ -81,7 +81,7 @@ TEST_F(BrickPoolTest, StaysWithinTheDriversTextures) {
 TEST_F(BrickPoolTest, SizesThatHoldNoBrickAreRefusedWithTheLeastThatDoes) {
     for (const int m : {8, 16, 32, 64}) {
         for (const bool has_color : {false, true}) {
-            const TreeShape shape = make_tree_shape(4, m, 8192);
+            const TreeShape shape = make_tree_shape_within(4, m, 8192);
             const std::size_t slot = slot_bytes(m, has_color);
             for (const std::size_t bytes : {std::size_t(0), std::size_t(1), slot - 1}) {
                 try {

@@ -27,7 +27,7 @@ class PackedBricksTest : public GlTest {};
 TEST_F(PackedBricksTest, TakeNoMoreBytesThanAskedFor) {
     for (const int m : {8, 16, 32}) {
         for (const bool has_color : {false, true}) {
-            const TreeShape shape = make_tree_shape(4, m, 8192);
+            const TreeShape shape = make_tree_shape_within(4, m, 8192);
             const std::size_t least = least_packed_bytes(shape, has_color);
             for (const std::size_t bytes : {least, least + 1, 3 * least, std::size_t(20) << 20U}) {
                 const PackedBricks bricks(shape, has_color, bytes);

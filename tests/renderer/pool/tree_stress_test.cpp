@@ -31,7 +31,7 @@ protected:
 
     void SetUp() override {
         GlTest::SetUp();
-        const TreeShape shape = make_tree_shape(GetParam().n, 8, GetParam().max_resolution);
+        const TreeShape shape = make_tree_shape_within(GetParam().n, 8, GetParam().max_resolution);
         tree_.emplace(shape, GetParam().slots, bytes_of_blocks(shape, GetParam().blocks), glm::uvec2(1));
         used_.resize(std::size_t(GetParam().slots), 0);
     }

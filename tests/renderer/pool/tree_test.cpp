@@ -16,22 +16,27 @@ namespace {
 
 using namespace cairn::test;
 
-TEST(TreeShapeTest, IsTheDeepestWhoseVoxelsDoNotPassTheLimit) {
-    EXPECT_EQ(make_tree_shape(4, 16, 8192).max_level, 4);
-    EXPECT_EQ(make_tree_shape(4, 16, 8192).resolution(), 4096);
+TEST(TreeShapeTest, IsTheLeastAroundTheVoxelsOrTheDeepestWithinThem) {
+    EXPECT_EQ(make_tree_shape(4, 16, 4096).resolution(), 4096);
+    EXPECT_EQ(make_tree_shape(4, 16, 4097).resolution(), 16384);
+    EXPECT_EQ(make_tree_shape_within(4, 16, 16383).resolution(), 4096);
     EXPECT_EQ(make_tree_shape(2, 8, 8).max_level, 0);
     EXPECT_EQ(make_tree_shape(2, 8, 1 << MAX_RESOLUTION_BITS).max_level, 18);
+    EXPECT_EQ(most_voxels_across(2, 8), 1 << MAX_RESOLUTION_BITS);
+    EXPECT_EQ(most_voxels_across(4, 16), 1 << 20);
     for (const int n : {2, 3, 4, 8}) {
         for (const int m : n == 3 ? std::vector{27, 81} : std::vector{8, 16, 32, 64}) {
-            for (int limit = m; limit <= 1 << MAX_RESOLUTION_BITS; limit += 1 + limit / 7) {
-                const TreeShape shape = make_tree_shape(n, m, limit);
-                const auto where = fmt::format("N = {}, M = {}, limit {}", n, m, limit);
+            for (int voxels = m; voxels <= most_voxels_across(n, m); voxels += 1 + voxels / 7) {
+                const auto where = fmt::format("N = {}, M = {}, {} voxels", n, m, voxels);
                 std::int64_t side = m;
-                for (int level = 0; level < shape.max_level; ++level)
+                int levels = 0;
+                for (; side < voxels; ++levels)
                     side *= n;
-                ASSERT_EQ(shape.resolution(), side) << where;
-                ASSERT_LE(side, limit) << where;
-                ASSERT_GT(side * n, limit) << where << ": one level more would fit";
+                const TreeShape around = make_tree_shape(n, m, voxels);
+                ASSERT_EQ(around.max_level, levels) << where;
+                ASSERT_EQ(around.resolution(), side) << where;
+                const TreeShape within = make_tree_shape_within(n, m, voxels);
+                ASSERT_EQ(within.resolution(), side == voxels ? side : side / n) << where;
             }
         }
     }
@@ -47,7 +52,7 @@ TEST(TreeShapeTest, RefusesWhatCannotWorkAndSaysWhatCan) {
           Wrong{8, 27, 8192, "8, 16, 32 or 64"}, Wrong{4, 12, 8192, "8, 16, 32 or 64"},
           Wrong{4, 4, 8192, "8, 16, 32 or 64"}, Wrong{4, 128, 8192, "8, 16, 32 or 64"},
           Wrong{4, 16, 15, "between 16"}, Wrong{2, 8, 0, "between 8"}, Wrong{2, 8, -1, "between 8"},
-          Wrong{4, 16, (1 << MAX_RESOLUTION_BITS) + 1, "2097152"}}) {
+          Wrong{4, 16, (1 << 20) + 1, "1048576"}, Wrong{2, 8, (1 << MAX_RESOLUTION_BITS) + 1, "2097152"}}) {
         try {
             (void)make_tree_shape(wrong.n, wrong.m, wrong.limit);
             ADD_FAILURE() << fmt::format("N = {}, M = {}, limit {} was accepted", wrong.n, wrong.m,

@@ -110,7 +110,8 @@ TEST_P(ConstantTiles, HaveTheColourOfTheirMean) {
     const optics::Image ours = make_boxed(tree(), box(true)).renderer.render(view).image;
     const double margin = double(GetParam().margin) / GetParam().n;
     const double voxel =
-        1.0 / renderer::make_tree_shape(GetParam().n, GetParam().m, GetParam().max_resolution).resolution();
+        1.0 /
+        renderer::make_tree_shape_within(GetParam().n, GetParam().m, GetParam().max_resolution).resolution();
     int judged = 0;
     for (int y = 0; y < view.size.height; ++y) {
         for (int x = 0; x < view.size.width; ++x) {
@@ -191,7 +192,8 @@ TEST_P(ConstantTiles, TilesOfLowFrequencyAreShownAsTheyAreAtEveryDistance) {
     const View view = view_of_box(1e-6);
     Boxed fresh = make_boxed(tree(), options);
     const optics::Image expected = fresh.renderer.render(view).image;
-    const TreeShape shape = renderer::make_tree_shape(GetParam().n, GetParam().m, GetParam().max_resolution);
+    const TreeShape shape =
+        renderer::make_tree_shape_within(GetParam().n, GetParam().m, GetParam().max_resolution);
     int deepest_low = 0;
     int deepest_high = 0;
     for (const renderer::Tile& tile : fresh.content->produced()) {

@@ -53,7 +53,7 @@ std::string to_string(const Tile& tile) {
 }
 
 TEST_P(SurfaceOracleTest, MaskIsWhatADirectVoxelizationOfTheChildrenSays) {
-    const TreeShape shape = make_tree_shape(GetParam().n, 16, GetParam().max_resolution);
+    const TreeShape shape = make_tree_shape_within(GetParam().n, 16, GetParam().max_resolution);
     const voxelizer::Surface surface = random_surface(21);
     const voxelizer::GpuSurface uploaded = upload(surface);
     voxelizer::TriangleIndex lists = tile_lists(shape, surface);
@@ -76,7 +76,7 @@ TEST_P(SurfaceOracleTest, MaskIsWhatADirectVoxelizationOfTheChildrenSays) {
 
 TEST_P(SurfaceOracleTest, TileIsEmptyExactlyWhenAllItsChildrenAre) {
     // The levels include those where one pyramid ends and the next begins.
-    const TreeShape shape = make_tree_shape(GetParam().n, 16, GetParam().max_resolution);
+    const TreeShape shape = make_tree_shape_within(GetParam().n, 16, GetParam().max_resolution);
     const voxelizer::Surface surface = random_surface(23);
     const voxelizer::GpuSurface uploaded = upload(surface);
     voxelizer::TriangleIndex lists = tile_lists(shape, surface);
@@ -101,7 +101,7 @@ TEST_P(SurfaceOracleTest, TileIsEmptyExactlyWhenAllItsChildrenAre) {
 }
 
 TEST_P(SurfaceOracleTest, FinestTilesHaveNoChildren) {
-    const TreeShape shape = make_tree_shape(GetParam().n, 16, GetParam().max_resolution);
+    const TreeShape shape = make_tree_shape_within(GetParam().n, 16, GetParam().max_resolution);
     const voxelizer::Surface surface = random_surface(25);
     const voxelizer::GpuSurface uploaded = upload(surface);
     voxelizer::TriangleIndex lists = tile_lists(shape, surface);
@@ -115,7 +115,7 @@ TEST_P(SurfaceOracleTest, FinestTilesHaveNoChildren) {
 }
 
 TEST_P(SurfaceOracleTest, EmptySurfaceHasEmptyTiles) {
-    const TreeShape shape = make_tree_shape(GetParam().n, 16, GetParam().max_resolution);
+    const TreeShape shape = make_tree_shape_within(GetParam().n, 16, GetParam().max_resolution);
     const voxelizer::Surface surface = lattice_surface({}, 4096);
     const voxelizer::GpuSurface uploaded = upload(surface);
     voxelizer::TriangleIndex lists = tile_lists(shape, surface);

@@ -93,7 +93,9 @@ void expect_occupancy(const voxelizer::Surface& surface, const TreeShape& shape,
 
 class SurfaceProducerTest : public GlTest, public ::testing::WithParamInterface<Shape> {
 protected:
-    [[nodiscard]] static TreeShape shape() { return make_tree_shape(GetParam().n, GetParam().m, 65536); }
+    [[nodiscard]] static TreeShape shape() {
+        return make_tree_shape_within(GetParam().n, GetParam().m, 65536);
+    }
 };
 
 TEST_P(SurfaceProducerTest, BricksHoldExactlyTheOccupiedVoxelsBorderIncluded) {

@@ -113,7 +113,7 @@ Tile tile_near(Random& random, const TreeShape& shape, const std::vector<Lattice
 class ShapedBricks : public GlTest, public ::testing::WithParamInterface<Shape> {
 protected:
     [[nodiscard]] static TreeShape shape() {
-        return make_tree_shape(GetParam().n, GetParam().m, GetParam().max_resolution);
+        return make_tree_shape_within(GetParam().n, GetParam().m, GetParam().max_resolution);
     }
 };
 

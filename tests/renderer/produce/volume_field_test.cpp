@@ -120,8 +120,8 @@ TEST(VolumeFields, ShapeHoldsTheFieldOrIsCutOffAtTheLimit) {
     EXPECT_EQ(whole.tree.resolution(), 512);
     EXPECT_EQ(whole.finest_coarseness, 0);
     const VolumeShape cut = make_volume_shape(frame, 2, 16, 100);
-    EXPECT_EQ(cut.tree.resolution(), 64);
-    EXPECT_EQ(cut.finest_coarseness, 3);
+    EXPECT_EQ(cut.tree.resolution(), 128);  // holds 75 voxels of four samples each
+    EXPECT_EQ(cut.finest_coarseness, 2);
     EXPECT_EQ(cut.coarseness(0), whole.coarseness(0));
     EXPECT_THROW((void)make_volume_shape(frame, 4, 16, 8192), Error);
 }
