@@ -101,16 +101,19 @@ private:
         for (std::size_t s = 0; s < series_.size(); ++s) {
             lines.clear();
             bool is_line = false;
+            bool has_samples = false;
             for (const Point& point : points_) {
                 if (point.scene != scene || point.series != series_[s]) continue;
                 lines += fmt::format("{:.6g} {:.6g}\n", point.ms, point.errors[error]);
-                is_line = point.varied == "shape" || point.varied == "samples";
+                has_samples = point.varied == "samples";
+                is_line = point.varied == "shape" || has_samples;
             }
             blocks += data_block(fmt::format("$s{}", s), lines);
             const PlotStyle& style = plot_styles[s % plot_styles.size()];
-            plots += fmt::format(", $s{} using 1:2 with {} pt {} ps {} lw 1.4 lc \"{}\" title {}", s,
-                                 is_line ? "linespoints" : "points", is_line ? style.point : 2,
-                                 is_line ? 1.1 : 1.8, style.color, quoted(series_[s]));
+            plots +=
+                fmt::format(", $s{} using 1:2 with {} pt {} ps {} lw 1.4{} lc \"{}\" title {}", s,
+                            is_line ? "linespoints" : "points", is_line ? style.point : 2,
+                            is_line ? 1.1 : 1.8, has_samples ? " dt 2" : "", style.color, quoted(series_[s]));
         }
         plots +=
             ", $labels using 1:2:3 with labels offset 0,-1 font \"sans,9\" notitle, $front using 1:2 "
