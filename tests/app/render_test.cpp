@@ -216,6 +216,22 @@ TEST(AppRender, WhatIsNotAsAskedForIsTold) {
     EXPECT_EQ(sponge.json().value("finest_resolution", 0), 729) << sponge;
 }
 
+TEST(AppRender, SamplesSmoothThePictureAndAreReported) {
+    const ScratchFolder folder;
+    const std::vector<std::string> run = {"render", "builtin:cornell", "--size", "48x36",
+                                          "-o",     folder.file("a.png")};
+    EXPECT_EQ(cairn_json(run).value("samples", 0), 1);
+    const std::size_t colors = Picture(folder.file("a.png")).color_count();
+    std::vector<std::string> sampled = run;
+    sampled.insert(sampled.end(), {"--samples", "4"});
+    EXPECT_EQ(cairn_json(sampled).value("samples", 0), 4);
+    EXPECT_GT(Picture(folder.file("a.png")).color_count(), colors) << "no edge is a mean";
+    sampled.insert(sampled.end(), {"--frame-budget", "10"});
+    const Answer within_budget = cairn(sampled);
+    EXPECT_EQ(within_budget.code, 2) << within_budget;
+    EXPECT_NE(within_budget.err.find("--samples"), std::string::npos) << within_budget;
+}
+
 TEST(AppRender, FramesAreTimedIfThatIsAskedFor) {
     const ScratchFolder folder;
     const std::vector<std::string> run = {"render", "builtin:cornell",   "--size", "16x12",

@@ -187,6 +187,41 @@ TEST_F(ViewerTest, RefinesInSlicesToTheUnlimitedPicture) {
     EXPECT_EQ(refinement.image().rgba, expected.rgba);
 }
 
+TEST_F(ViewerTest, SamplesAreAddedAtRestUntilThePictureIsThatOfRender) {
+    const optics::Image one = make().render(view_).image;
+    view_.samples = 3;
+    const optics::Image expected = make().render(view_).image;
+    ASSERT_NE(expected.rgba, one.rgba);
+    renderer::Renderer renderer = make();
+    app::Viewer viewer(renderer, view_, 4.0);
+    double now = 0.0;
+    rest(viewer, now);
+    EXPECT_TRUE(viewer.converged());
+    EXPECT_EQ(viewer.growing().image().rgba, expected.rgba);
+    viewer.command(Command::take_picture);
+    rest(viewer, now);
+    const std::optional<app::TakenPicture> taken = viewer.take_picture();
+    ASSERT_TRUE(taken);
+    EXPECT_EQ(taken->image.rgba, expected.rgba);
+    EXPECT_EQ(taken->view.samples, 3) << "the line that makes it again leaves the samples out";
+}
+
+TEST_F(ViewerTest, SamplesThatThePoolsCannotHoldAreStillTaken) {
+    Settings options;
+    options.pools.brick_bytes = 1U << 20U;
+    view_.detail.pixel_error = 0.5;
+    view_.samples = 2;
+    const optics::Image expected = make().render(view_).image;
+    renderer::Renderer renderer = make(options);
+    app::Viewer viewer(renderer, view_, 4.0);
+    viewer.command(Command::take_picture);
+    double now = 0.0;
+    EXPECT_LT(rest(viewer, now), 10000) << "it never comes to rest";
+    const std::optional<app::TakenPicture> taken = viewer.take_picture();
+    ASSERT_TRUE(taken);
+    EXPECT_EQ(taken->image.rgba, expected.rgba);
+}
+
 TEST_F(ViewerTest, PictureThatThePoolsCannotHoldIsStillTaken) {
     Settings options;
     options.pools.brick_bytes = 1U << 20U;
