@@ -15,7 +15,7 @@ namespace cairn::renderer {
 namespace {
 
 /// Parts in a row that use at most a quarter of the bricks in the pool, before parts become larger.
-constexpr int most_small_parts = 8;
+constexpr int most_small_parts = 32;
 
 ContentProgram program_of(const Content& content) {
     ContentProgram program = content.program();

@@ -218,7 +218,7 @@ TEST(AppRender, WhatIsNotAsAskedForIsTold) {
 
 TEST(AppRender, SamplesSmoothThePictureAndAreReported) {
     const ScratchFolder folder;
-    const std::vector<std::string> run = {"render", "builtin:cornell", "--size", "48x36",
+    const std::vector<std::string> run = {"render", "builtin:cornell",   "--size", "48x36",
                                           "-o",     folder.file("a.png")};
     EXPECT_EQ(cairn_json(run).value("samples", 0), 1);
     const std::size_t colors = Picture(folder.file("a.png")).color_count();
