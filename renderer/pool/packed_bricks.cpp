@@ -26,7 +26,8 @@ std::uint32_t units_of(std::uint32_t words) {
 
 /// Bytes of a brick of few voxels: there are slots for so many.
 std::size_t small_brick_bytes(const TreeShape& shape) {
-    return 16 * std::size_t(shape.m) * std::size_t(shape.m);
+    return std::size_t(shape.head_words()) * sizeof(std::uint32_t) +
+           2 * std::size_t(shape.m) * std::size_t(shape.m);
 }
 
 }  // namespace
@@ -37,7 +38,8 @@ std::size_t most_packed_words(const TreeShape& shape, bool has_color) {
         const auto border = std::size_t(shape.border_voxels(mip));
         const auto inner =
             std::size_t(shape.m >> mip) * std::size_t(shape.m >> mip) * std::size_t(shape.m >> mip);
-        words += has_color ? 4 * inner + 2 * border : 3 * (inner + border);
+        const std::size_t in_table = has_color ? inner : inner + border;
+        words += (has_color ? 2 : 1) * (inner + border) + 2 * in_table + 2 * ((in_table + 31) / 32);
     }
     return words;
 }

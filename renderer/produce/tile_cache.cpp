@@ -123,12 +123,17 @@ bool TileCache::subdivide(std::uint32_t entry) {
 
 /// Gives the tile a slot, if there is one, to be filled by produce_requests().
 bool TileCache::request(std::uint32_t entry, bool may_stay) {
+    if (!may_stay && lacks_room_) return false;
     const std::optional<int> slot = tree_.add_brick(entry, may_stay);
-    if (!slot) return false;
+    if (!slot) {
+        lacks_room_ = lacks_room_ || may_stay;
+        return false;
+    }
     // Before the slot gets other room: the brick that had to go is still where the slot's was.
     if (cache_) cache_->store(tree_.take_evicted());
     if (!expect_room(*slot, tree_.tile(entry))) {
         tree_.take_brick_back(entry);
+        lacks_room_ = lacks_room_ || may_stay;
         return false;
     }
     requests_.push_back({tree_.tile(entry), *slot});

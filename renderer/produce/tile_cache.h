@@ -72,7 +72,11 @@ public:
         tree_.begin_round(round, brick_stamps);
     }
     /// Tree::keep_since().
-    void keep_since(std::optional<Round> round) { tree_.keep_since(round); }
+    void keep_since(std::optional<Round> round) {
+        if (round != kept_since_) lacks_room_ = false;
+        kept_since_ = round;
+        tree_.keep_since(round);
+    }
 
     /// Is the whole content certainly empty? Always false for a tree of one level, whose root has no child
     /// mask.
@@ -127,6 +131,10 @@ private:
     std::vector<BrickRequest> requests_;  // requests that wait to be produced together
     std::vector<std::uint32_t> requested_entries_;
     std::size_t expected_words_ = 0;  // of their packed bricks
+    std::optional<Round> kept_since_;
+    /// A brick that may stay found no room since then. What went in vain for it leaves room; bricks that may
+    /// not stay must not take that, or they would go for it again, without end.
+    bool lacks_room_ = false;
     /// Words of packed bricks that found no room, so that they are not produced in vain again.
     std::unordered_map<Tile, std::uint32_t, TileHash> words_without_room_;
     Counters counted_;  // without those that the tree and the brick cache count
