@@ -43,9 +43,12 @@ std::vector<gl::ShaderVariants> of_producers() {
     for (const TreeShape& shape : {TreeShape{4, 16}, TreeShape{2, 8}, TreeShape{3, 27}})
         fractal.push_back(shape.defines(false));
     std::vector<gl::Defines> surface;
-    for (const TreeShape& shape :
-         {TreeShape{4, 16, 4, 2}, TreeShape{4, 16}, TreeShape{2, 8, 7, 1}, TreeShape{8, 8, 3, 3},
-          TreeShape{3, 27}, TreeShape{3, 81}, TreeShape{2, 64}}) {
+    TreeShape with_marks{2, 8, 7, 1};
+    with_marks.geometry = VoxelGeometry::marks;
+    TreeShape with_slabs{8, 8, 3, 3};
+    with_slabs.geometry = VoxelGeometry::slabs;
+    for (const TreeShape& shape : {TreeShape{4, 16, 4, 2}, TreeShape{4, 16}, with_marks, with_slabs,
+                                   TreeShape{3, 27}, TreeShape{3, 81}, TreeShape{2, 64}}) {
         for (const bool has_color : {false, true}) {
             for (const gl::Defines& mask : gl::each_value("HAS_MASK", {0, 1}))
                 surface.push_back(joined(shape.defines(has_color), mask));
@@ -53,7 +56,9 @@ std::vector<gl::ShaderVariants> of_producers() {
     }
     return {{"produce/fractal.comp.glsl", fractal},       {"produce/fractal_masks.comp.glsl", fractal},
             {"produce/masks.comp.glsl", surface},         {"produce/border_masks.comp.glsl", surface},
-            {"produce/count_records.comp.glsl", surface}, {"produce/store_heads.comp.glsl", surface},
+            {"produce/count_records.comp.glsl", surface}, {"produce/normals.comp.glsl", surface},
+            {"produce/slabs.comp.glsl", surface},         {"produce/flat_voxels.comp.glsl", surface},
+            {"produce/count_marks.comp.glsl", surface},   {"produce/store_heads.comp.glsl", surface},
             {"produce/resolve.comp.glsl", surface},       {"produce/splat.comp.glsl", surface},
             {"produce/summarize.comp.glsl", surface}};
 }
@@ -101,12 +106,18 @@ std::vector<MarchSetting> march_settings() {
     const Channels color{.color = true};
     const Channels packed{.packed = true};
     const Channels packed_color{.color = true, .packed = true};
+    TreeShape with_marks{2, 8, 7, 1};
+    with_marks.geometry = VoxelGeometry::marks;
+    TreeShape with_slabs{8, 8, 3, 3};
+    with_slabs.geometry = VoxelGeometry::slabs;
+    TreeShape of_voxels{4, 64, 0};
+    of_voxels.geometry = VoxelGeometry::voxel;
     return {
         // n, m, levels and mips; channels; traversal; tile queries; content
         {{4, 16, 4, 2}, packed_color, Traversal::mini_stack},
-        {{4, 16, 4}, packed_color, Traversal::mini_stack, TileQueries::blocks},
-        {{2, 8, 7, 1}, packed, Traversal::stackless},
-        {{8, 8, 3, 3}, packed, Traversal::restart},
+        {{4, 16, 4}, packed, Traversal::mini_stack, TileQueries::blocks},
+        {with_marks, packed, Traversal::stackless},
+        {with_slabs, packed, Traversal::restart},
         {{8, 16, 3},
          color,
          Traversal::stackless,
@@ -115,7 +126,7 @@ std::vector<MarchSetting> march_settings() {
         {{2, 16, 8}, plain, Traversal::mini_stack, TileQueries::list, {.has_constant = true}},
         {{3, 27, 5}, packed_color, Traversal::stackless},
         {{3, 81, 4}, plain, Traversal::mini_stack},
-        {{4, 64, 0}, packed, Traversal::mini_stack},
+        {of_voxels, packed, Traversal::mini_stack},
         {{2, 32, 5}, color, Traversal::restart},
         {in_windows, plain, Traversal::restart},
         {wide_in_windows, plain, Traversal::restart, TileQueries::blocks},

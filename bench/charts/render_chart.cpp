@@ -1,6 +1,6 @@
 // Converged frames by time and by error against a picture of the triangles with 64 samples per pixel: over
-// pixel error and the shape of the tree; at one shape, over samples per pixel; and at one pixel error, over
-// traversals and pool sizes.
+// pixel error and the shape of the tree; at one shape, over what rays meet in voxels and over samples per
+// pixel; and at one pixel error, over traversals and pool sizes.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -27,6 +27,9 @@ constexpr renderer::TreeOptions base{};
 constexpr std::array pixel_errors = {0.35, 0.5, 0.71, 1.0, 1.41, 2.0, 2.83, 4.0};
 constexpr std::array<std::array<int, 2>, 7> shapes = {
     {{base.n, base.m}, {2, 16}, {2, 32}, {3, 27}, {4, 8}, {4, 32}, {8, 16}}};
+/// What rays meet in voxels, beside what the base meets.
+constexpr std::array geometries = {renderer::VoxelGeometry::voxel, renderer::VoxelGeometry::marks,
+                                   renderer::VoxelGeometry::slabs};
 constexpr std::array sample_counts = {2, 4, 8, 16};
 constexpr std::array pools = {32U << 20U, 8U << 20U};
 
@@ -50,6 +53,20 @@ const char* name_of(renderer::Traversal traversal) {
     return "mini-stack";
 }
 
+const char* name_of(renderer::VoxelGeometry geometry) {
+    switch (geometry) {
+        case renderer::VoxelGeometry::voxel:
+            return "voxel";
+        case renderer::VoxelGeometry::marks:
+            return "marks";
+        case renderer::VoxelGeometry::slabs:
+            return "slabs";
+        case renderer::VoxelGeometry::both:
+            break;
+    }
+    return "both";
+}
+
 /// Measures frames of all settings in turn.
 class Contest {
 public:
@@ -63,6 +80,13 @@ public:
             const auto ours = make(setting);
             for (std::size_t i = 0; i < pixel_errors.size(); ++i)
                 if (is_base || i % 2 == 1) add(setting, ours, pixel_errors[i]);
+        }
+        for (const auto geometry : geometries) {
+            Setting setting{"geometry", base, usual};
+            setting.tree.geometry = geometry;
+            const auto ours = make(setting);
+            for (std::size_t i = 1; i < pixel_errors.size(); i += 2)
+                add(setting, ours, pixel_errors[i]);
         }
         for (const int samples : sample_counts) {
             const Setting setting{"samples", base, usual, samples};
@@ -91,9 +115,12 @@ public:
             table.rows.push_back(on_this_machine(
                 {name, varied, std::int64_t(contender.view.size.width), std::int64_t(tree.n),
                  std::int64_t(tree.m), std::string(name_of(options.march.traversal)),
+                 std::string(name_of(tree.n == 3 ? renderer::VoxelGeometry::voxel : tree.geometry)),
                  double(options.pools.brick_bytes) / mebibyte, contender.view.detail.pixel_error,
                  std::int64_t(samples), median(contender.samples_ms), errors.rmse, errors.silhouette,
                  std::int64_t(contender.converged.bricks_used),
+                 double(contender.converged.brick_bytes_resident) /
+                     double(std::max<std::uint64_t>(contender.converged.bricks_resident, 1)),
                  std::int64_t(contender.converged.bricks_produced), truth.milliseconds}));
         }
     }
@@ -124,9 +151,10 @@ private:
 
 Chart chart_render(const ChartOptions& options) {
     Chart chart;
-    chart.table.columns = {"scene",       "varied",          "size",     "n",      "m",      "traversal",
-                           "pool_mib",    "pixel_error",     "samples",  "ms",     "rmse",   "silhouette",
-                           "bricks_used", "bricks_produced", "truth_ms", "driver", "threads"};
+    chart.table.columns = {
+        "scene",       "varied",          "size",     "n",      "m",      "traversal",  "geometry",
+        "pool_mib",    "pixel_error",     "samples",  "ms",     "rmse",   "silhouette", "bricks_used",
+        "brick_bytes", "bricks_produced", "truth_ms", "driver", "threads"};
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) {
         add_real_scenes(chart, options, {"stanford_bunny_69k.glb"}, scenes);

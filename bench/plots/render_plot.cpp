@@ -23,6 +23,10 @@ struct Point {
 std::string series_of(const Row& row) {
     const std::string& varied = row.text("varied");
     if (varied == "shape") return fmt::format("N {}, M {}", row.whole("n"), row.whole("m"));
+    if (varied == "geometry") {
+        const std::string& met = row.text("geometry");
+        return met == "voxel" ? "whole voxels" : met + " alone";
+    }
     if (varied == "samples") return fmt::format("{} samples", row.whole("samples"));
     if (varied == "traversal") return row.text("traversal");
     return fmt::format("pool of {:g} MiB", row.number("pool_mib"));
@@ -102,18 +106,23 @@ private:
             lines.clear();
             bool is_line = false;
             bool has_samples = false;
+            bool has_geometry = false;
             for (const Point& point : points_) {
                 if (point.scene != scene || point.series != series_[s]) continue;
                 lines += fmt::format("{:.6g} {:.6g}\n", point.ms, point.errors[error]);
                 has_samples = point.varied == "samples";
-                is_line = point.varied == "shape" || has_samples;
+                has_geometry = point.varied == "geometry";
+                is_line = point.varied == "shape" || has_geometry || has_samples;
             }
             blocks += data_block(fmt::format("$s{}", s), lines);
             const PlotStyle& style = plot_styles[s % plot_styles.size()];
-            plots +=
-                fmt::format(", $s{} using 1:2 with {} pt {} ps {} lw 1.4{} lc \"{}\" title {}", s,
-                            is_line ? "linespoints" : "points", is_line ? style.point : 2,
-                            is_line ? 1.1 : 1.8, has_samples ? " dt 2" : "", style.color, quoted(series_[s]));
+            plots += fmt::format(", $s{} using 1:2 with {} pt {} ps {} lw 1.4{} lc \"{}\" title {}", s,
+                                 is_line ? "linespoints" : "points", is_line ? style.point : 2,
+                                 is_line ? 1.1 : 1.8,
+                                 has_samples    ? " dt 2"
+                                 : has_geometry ? " dt 3"
+                                                : "",
+                                 style.color, quoted(series_[s]));
         }
         plots +=
             ", $labels using 1:2:3 with labels offset 0,-1 font \"sans,9\" notitle, $front using 1:2 "

@@ -12,6 +12,8 @@
 namespace cairn::renderer {
 
 static_assert(max_window_tile_bits == WINDOW_TILE_BITS, "the shaders have other windows");
+static_assert(int(VoxelGeometry::marks) == GEOMETRY_MARKS && int(VoxelGeometry::slabs) == GEOMETRY_SLABS &&
+              int(VoxelGeometry::both) == (GEOMETRY_MARKS | GEOMETRY_SLABS));
 
 /// Positions of voxels and their borders stay within 63 bits.
 constexpr int most_voxel_bits = 60;
@@ -30,6 +32,7 @@ gl::Defines TreeShape::defines(bool has_color) const {
             {"GROUPS", std::to_string(groups())},
             {"MAX_LEVEL", std::to_string(has_windows() ? levels_in_window() : max_level)},
             {"WINDOWS", has_windows() ? "1" : "0"},
+            {"GEOMETRY", std::to_string(int(geometry))},
             {"HAS_COLOR", has_color ? "1" : "0"}};
 }
 
@@ -120,8 +123,11 @@ TreeShape make_deep_tree_shape(int n, int m, int max_level) {
 }
 
 TreeShape tree_shape_of(const TreeOptions& options) {
-    if (!options.max_level)
-        return make_tree_shape(options.n, options.m, options.max_resolution, options.mips);
+    if (!options.max_level) {
+        TreeShape shape = make_tree_shape(options.n, options.m, options.max_resolution, options.mips);
+        shape.geometry = options.geometry;
+        return shape;
+    }
     if (options.mips) {
         throw Error(Fault::usage, "tree", "bricks of a tree of any depth have no mip levels",
                     "leave the mips and blended levels of detail to surfaces");

@@ -13,6 +13,15 @@ namespace cairn::renderer {
 /// The most that TreeShape::window_tile_bits can be (WINDOW_TILE_BITS in the shaders).
 constexpr int max_window_tile_bits = 16;
 
+/// What rays meet in an occupied voxel of a surface (shaders/march/march.glsl). With N = 3 it is `voxel`.
+enum class VoxelGeometry : std::uint8_t {
+    voxel = 0,  ///< the voxel, by its coverage
+    marks = 1,  ///< its marks: the finer voxels, 4^3 in each, that the surface meets
+    slabs =
+        2,  ///< its slab: two planes that hold the surface; the whole voxel where normals are too different
+    both = 3,  ///< what lies in its slab and in its marks
+};
+
 /// The parameters of an N^3-tree with M^3 bricks (Crassin et al. 2008, section 4.1). Both are powers of one
 /// base, 2 or 3, so that all cells of the tree and of its bricks nest.
 struct TreeShape {
@@ -27,6 +36,7 @@ struct TreeShape {
     /// For trees that rays go through in windows: log2 of the most voxels across a window's tile, in
     /// [m_shift(), max_window_tile_bits].
     int window_tile_bits = max_window_tile_bits;
+    VoxelGeometry geometry = VoxelGeometry::both;
 
     /// The base whose powers n and m are; their exponents are n_shift() and m_shift().
     [[nodiscard]] int cell_base() const { return n == 3 ? 3 : 2; }
@@ -86,7 +96,7 @@ struct TreeShape {
     /// Levels under the tiles of a window that a ray can reach.
     [[nodiscard]] int levels_in_window() const;
     /// Macros for shaders: the numbers above by the same names in capitals, MAX_LEVEL (counted from the tiles
-    /// of a window if there are windows), WINDOWS and HAS_COLOR.
+    /// of a window if there are windows), WINDOWS, GEOMETRY and HAS_COLOR.
     [[nodiscard]] gl::Defines defines(bool has_color) const;
 };
 
@@ -129,6 +139,9 @@ struct TreeOptions {
     /// Levels under the root, instead of max_resolution: for contents without a finest level. The finest
     /// voxels are at least 2^-60 of the root cube.
     std::optional<int> max_level = std::nullopt;
+    /// What rays meet in the voxels of surfaces. `both` is the most exact and takes the least memory; the
+    /// others are there to be measured beside it.
+    VoxelGeometry geometry = VoxelGeometry::both;
     bool operator==(const TreeOptions&) const = default;
 };
 

@@ -32,6 +32,16 @@ std::size_t voxels_per_brick(const TreeShape& shape) {
     return voxels;
 }
 
+/// What a thread leaves of each record for those behind it (records.glsl): at most of all voxels of a brick.
+std::size_t record_bytes_per_brick(const TreeShape& shape) {
+    return voxels_per_brick(shape) * 2 * sizeof(std::uint32_t);
+}
+
+/// Entries of the table of marks, of all voxels of a brick.
+std::size_t table_bytes_per_brick(const TreeShape& shape) {
+    return (voxels_per_brick(shape) / 32 + 2) * 2 * sizeof(std::uint32_t);
+}
+
 std::size_t scratch_bytes_per_brick(const TreeShape& shape, bool has_color) {
     return voxels_per_brick(shape) * (has_color ? 14 : 11) *
            sizeof(std::uint32_t);  // 2 mask words and SUM_WORDS
@@ -54,7 +64,9 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
       pair_room_(std::max<std::size_t>(limits.pairs, 1)),
       pairs_(surface.chunks.size()) {
     const std::size_t brick_bytes = scratch_bytes_per_brick(shape, surface.has_color);
-    batch_ = int(std::clamp<std::size_t>(limits.scratch_bytes / brick_bytes, 1, 0xFFFF));
+    const std::size_t batch_bytes =
+        brick_bytes + record_bytes_per_brick(shape) + table_bytes_per_brick(shape);
+    batch_ = int(std::clamp<std::size_t>(limits.scratch_bytes / batch_bytes, 1, 0xFFFF));
     gl::Defines defines = shape.defines(surface.has_color);
     defines.emplace_back("HAS_MASK", surface.has_mask ? "1" : "0");
     resolve_ = gl::build_compute(shaders, "produce/resolve.comp.glsl", defines);
@@ -64,15 +76,23 @@ SurfaceProducer::SurfaceProducer(const TreeShape& shape, const voxelizer::GpuSur
     masks_ = gl::build_compute(shaders, "produce/masks.comp.glsl", defines);
     summarize_ = gl::build_compute(shaders, "produce/summarize.comp.glsl", defines);
     splat_ = gl::build_compute(shaders, "produce/splat.comp.glsl", defines);
+    normals_ = gl::build_compute(shaders, "produce/normals.comp.glsl", defines);
+    if (has_slabs()) slabs_ = gl::build_compute(shaders, "produce/slabs.comp.glsl", defines);
+    flat_voxels_ = gl::build_compute(shaders, "produce/flat_voxels.comp.glsl", defines);
+    count_marks_ = gl::build_compute(shaders, "produce/count_marks.comp.glsl", defines);
 
     scratch_ = gl::Buffer(std::size_t(batch_) * brick_bytes, "brick scratch");
     scratch_.fill(0);
     // The masks of all voxels of a batch stand before the sums (scratch.glsl).
-    for (gl::Program* program : {&splat_, &resolve_})
-        program->set("sums_offset", unsigned(std::size_t(batch_) * voxels_per_brick(shape) * 2));
+    for (gl::Program* program : {&splat_, &normals_, &slabs_, &flat_voxels_, &resolve_}) {
+        if (program->id() != 0)
+            program->set("sums_offset", unsigned(std::size_t(batch_) * voxels_per_brick(shape) * 2));
+    }
     tiles_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::BrickTile), "brick tiles");
     heads_ = gl::Buffer(std::size_t(batch_) * std::size_t(shape.head_words()) * sizeof(std::uint32_t),
                         "heads of bricks");
+    marked_ = gl::Buffer(std::size_t(batch_) * table_bytes_per_brick(shape), "marked records");
+    record_places_ = gl::Buffer(std::size_t(batch_) * record_bytes_per_brick(shape), "places of records");
     counts_ = gl::Buffer(std::size_t(batch_) * sizeof(interop::PackedCount), "counts of records");
     pair_buffer_ = gl::Buffer(pair_room_ * sizeof(interop::BrickPair), "brick pairs");
 }
@@ -127,18 +147,19 @@ void SurfaceProducer::gather_pairs_of_mip(const Tile& tile, std::uint32_t number
     }
 }
 
-void SurfaceProducer::splat(std::size_t chunk) {
+/// Runs a program of which a thread is a pair.
+void SurfaceProducer::run_pairs(gl::Program& program, std::size_t chunk) {
     const std::vector<interop::BrickPair>& pairs = pairs_[chunk];
     if (pairs.empty()) return;
     surface_.bind(chunk);
     tiles_.bind_storage(SSBO_BRICK_TILES);
     scratch_.bind_storage(SSBO_BRICK_SCRATCH);
     pair_buffer_.bind_storage(SSBO_BRICK_PAIRS);
-    splat_.use();
+    program.use();
     for (std::size_t i = 0; i < pairs.size(); i += pair_room_) {
         const std::size_t count = std::min(pair_room_, pairs.size() - i);
         pair_buffer_.write(0, &pairs[i], count * sizeof(interop::BrickPair));
-        splat_.set("pair_count", unsigned(count));
+        program.set("pair_count", unsigned(count));
         gl::dispatch_threads(count, THREADS_PER_GROUP);
     }
 }
@@ -158,9 +179,10 @@ void SurfaceProducer::produce_batch(std::span<const BrickRequest> requests, Bric
 
     gather_pairs(requests);
     for (std::size_t chunk = 0; chunk < pairs_.size(); ++chunk)
-        splat(chunk);
+        run_pairs(splat_, chunk);
 
     number_records(requests.size());
+    find_slabs(requests.size());
     find_room(requests, pool, produced);
     pack(requests.size(), pool);
 }
@@ -187,6 +209,39 @@ void SurfaceProducer::number_records(std::size_t tile_count) {
     dispatch(summarize_, tile_count, tile_count * std::size_t(shape_.summary_words()));
     dispatch(count_records_, tile_count, tile_count);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    const auto counts = counts_.read_all<interop::PackedCount>(tile_count);
+    record_count_ = 0;
+    for (std::size_t i = 0; i < tile_count; ++i) {
+        batch_tiles_[i].first_record = std::uint32_t(record_count_);
+        record_count_ += counts[i].records;
+    }
+    tiles_.write(0, batch_tiles_.data(), batch_tiles_.size() * sizeof(interop::BrickTile));
+}
+
+/// Finds the slabs of the batch's voxels, and which of them need marks beside.
+void SurfaceProducer::find_slabs(std::size_t tile_count) {
+    const auto bind = [&] {
+        tiles_.bind_storage(SSBO_BRICK_TILES);
+        scratch_.bind_storage(SSBO_BRICK_SCRATCH);
+        heads_.bind_storage(SSBO_BRICK_HEADS);
+        counts_.bind_storage(SSBO_BRICK_COUNTS);
+        marked_.bind_storage(SSBO_BRICK_MARKED);
+        record_places_.bind_storage(SSBO_BRICK_RECORDS);
+    };
+    bind();
+    marked_.fill(0);
+    for (gl::Program* program : {&normals_, &flat_voxels_, &resolve_})
+        program->set("record_count", unsigned(record_count_));
+    dispatch(normals_, tile_count, record_count_);
+    if (has_slabs()) {
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+        for (std::size_t chunk = 0; chunk < pairs_.size(); ++chunk)
+            run_pairs(slabs_, chunk);
+        bind();
+    }
+    dispatch(flat_voxels_, tile_count, record_count_);
+    dispatch(count_marks_, tile_count, tile_count);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 /// Gives the batch's bricks room in the pool. Empty ones need none: the oracle may let them through, with
@@ -194,10 +249,7 @@ void SurfaceProducer::number_records(std::size_t tile_count) {
 void SurfaceProducer::find_room(std::span<const BrickRequest> requests, BrickPool& pool,
                                 std::span<ProducedTile> produced) {
     const auto counts = counts_.read_all<interop::PackedCount>(requests.size());
-    record_count_ = 0;
     for (std::size_t i = 0; i < requests.size(); ++i) {
-        batch_tiles_[i].first_record = std::uint32_t(record_count_);
-        record_count_ += counts[i].records;
         if (counts[i].words == 0) {
             produced[i].constant = true;
         } else if (pool.reserve(requests[i].slot, counts[i].words)) {
@@ -215,7 +267,6 @@ void SurfaceProducer::pack(std::size_t tile_count, const BrickPool& pool) {
     // Rays of an earlier pass may still read what was there.
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     dispatch(store_heads_, tile_count, tile_count * std::size_t(shape_.head_words()));
-    resolve_.set("record_count", unsigned(record_count_));
     dispatch(resolve_, tile_count, record_count_);
     // The next batch reuses the scratch; rays fetch the words.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT |

@@ -22,9 +22,10 @@ struct SurfaceProducerLimits {
 };
 
 /// Fills bricks by voxelizing the tile's region four times finer, from the triangles in the tile's list:
-/// these are the voxels' marks, and base colour and normal are means over the surface. All work is on the
-/// GPU, for many bricks at once; the CPU only learns how much room each brick needs. Each mip is voxelized
-/// like a brick of its own, so that it equals the matching part of the parent's brick.
+/// these are the voxels' marks; a slab holds the surface where normals are alike, and takes the place of
+/// marks that tell no more; and base colour and normal are means over the surface. All work is on the GPU,
+/// for many bricks at once; the CPU only learns how much room each brick needs. Each mip is voxelized like a
+/// brick of its own, so that it equals the matching part of the parent's brick.
 class SurfaceProducer final : public Producer {
 public:
     /// Refers to the surface and the lists, which must outlive it.
@@ -37,14 +38,19 @@ public:
 private:
     void produce_batch(std::span<const BrickRequest> requests, BrickPool& pool,
                        std::span<ProducedTile> produced);
+    /// Rays meet whole voxels where those are cut in thirds.
+    [[nodiscard]] bool has_slabs() const {
+        return shape_.cell_base() == 2 && (unsigned(shape_.geometry) & unsigned(VoxelGeometry::slabs)) != 0;
+    }
     void number_records(std::size_t tile_count);
+    void find_slabs(std::size_t tile_count);
     void find_room(std::span<const BrickRequest> requests, BrickPool& pool, std::span<ProducedTile> produced);
     void pack(std::size_t tile_count, const BrickPool& pool);
     void dispatch(gl::Program& program, std::size_t tile_count, std::size_t threads) const;
     void gather_pairs(std::span<const BrickRequest> requests);
     void gather_pairs_of_mip(const Tile& tile, std::uint32_t number, int mip,
                              std::span<const std::uint32_t> triangles);
-    void splat(std::size_t chunk);
+    void run_pairs(gl::Program& program, std::size_t chunk);
 
     TreeShape shape_;
     const voxelizer::GpuSurface& surface_;
@@ -52,6 +58,10 @@ private:
     int batch_ = 1;          ///< bricks at a time
     std::size_t pair_room_;  ///< pairs that are sent to the driver at once
     gl::Program splat_;
+    gl::Program normals_;
+    gl::Program slabs_;
+    gl::Program flat_voxels_;
+    gl::Program count_marks_;
     gl::Program masks_;
     gl::Program border_masks_;
     gl::Program summarize_;
@@ -63,6 +73,8 @@ private:
     gl::Buffer tiles_;
     gl::Buffer heads_;
     gl::Buffer counts_;
+    gl::Buffer marked_;
+    gl::Buffer record_places_;
     gl::Buffer scratch_;
     gl::Buffer pair_buffer_;
     std::vector<std::uint32_t> listed_;                   // triangles of a tile

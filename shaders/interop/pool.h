@@ -29,6 +29,11 @@
 // Packed bricks keep the marks of a voxel: 2^MARK_BITS finer cells along each axis. Rays count in these cells.
 #define MARK_BITS 2
 
+// GEOMETRY: what rays meet in a voxel of a packed brick (VoxelGeometry in renderer/pool/tree_shape.h). With neither, the
+// voxel itself; with both, what lies in both.
+#define GEOMETRY_MARKS 1
+#define GEOMETRY_SLABS 2
+
 #ifdef __cplusplus
 namespace cairn::interop {
 #endif

@@ -17,6 +17,8 @@
 #define IMAGE_BRICK_WORDS 0       // the words of all packed bricks
 #define SSBO_BRICK_HEADS 0        // the heads of the batch's packed bricks, HEAD_WORDS each
 #define SSBO_BRICK_COUNTS 1       // PackedCount per tile of the batch
+#define SSBO_BRICK_RECORDS 3      // where the voxels of the batch's records are
+#define SSBO_BRICK_MARKED 2       // which records keep their marks (shaders/produce/records.glsl)
 
 #ifdef __cplusplus
 namespace cairn::interop {

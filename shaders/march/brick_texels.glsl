@@ -1,6 +1,6 @@
 // Coverage and filtered attributes of the voxels of a brick, for rays.
-#include "pool/brick_normals.glsl"
 #include "pool/coverage.glsl"
+#include "pool/slab.glsl"
 
 // The transmittance behind a voxel. Voxels of one surface cover different parts of a pixel, so their shares
 // add up instead of multiplying; and a voxel that is at least half covered is opaque, so that no light leaks
@@ -17,34 +17,45 @@ struct VoxelPlace {
     int record;  // number of its record
 };
 
+int record_word(int brick, int record) { return brick + HEAD_WORDS + record * RECORD_WORDS; }
+
 VoxelPlace voxel_place(Sample s, ivec3 v) {
     const GroupBit at = group_bit(v, s.mip);
     const uvec2 occupied = mask_word(s.brick, SUMMARY_WORDS + at.group);
     const int record = int(brick_word(s.brick + HEAD_RANKS + at.group)) + bits_below(occupied, at.bit);
-    const int word = has_bit(occupied, at.bit) ? s.brick + HEAD_WORDS + record * RECORD_WORDS : -1;
-    return VoxelPlace(word, record);
-}
-
-// Colour (square root of the linear one) times coverage, and coverage. Without colours, coverage alone, in all
-// four.
-vec4 color_at(Sample s, VoxelPlace place) {
-    if (place.word < 0) return vec4(0.0);
-#if HAS_COLOR
-    return unpackUnorm4x8(brick_word(place.word + 1));
-#else
-    const int marks = s.brick + int(brick_word(s.brick + HEAD_MARKS)) + 2 * place.record;
-    return vec4(coverage_of_marks(two_brick_words(marks)));
-#endif
+    return VoxelPlace(has_bit(occupied, at.bit) ? record_word(s.brick, record) : -1, record);
 }
 
 // As pool/brick_normals.glsl packs them; 0: none.
 uint normals_at(VoxelPlace place) { return place.word < 0 ? 0u : brick_word(place.word); }
+
+// Where the marks of a voxel that is in the table are; -1: they are not kept, because the slab tells as much.
+int marks_word(int brick, int record) {
+    const uvec2 entry = two_brick_words(brick + int(brick_word(brick + HEAD_TABLE)) + 2 * (record >> 5));
+    const uint bit = 1u << (record & 31);
+    return (entry.x & bit) != 0u ? brick + int(entry.y) + 2 * bitCount(entry.x & (bit - 1u)) : -1;
+}
+
+#if HAS_COLOR
+// Colour (square root of the linear one) times coverage, and coverage.
+vec4 color_at(VoxelPlace place) { return place.word < 0 ? vec4(0.0) : unpackUnorm4x8(brick_word(place.word + 1)); }
+
+float coverage_at(Sample s, VoxelPlace place) { return color_at(place).a; }
+#else
+float coverage_at(Sample s, VoxelPlace place) {
+    if (place.word < 0) return 0.0;
+    const int marks = marks_word(s.brick, place.record);
+    return marks >= 0 ? coverage_of_marks(two_brick_words(marks)) : coverage_of_slab(unpack_slab(normals_at(place)));
+}
+#endif
 #else
 #define VoxelPlace ivec3
 
 ivec3 voxel_place(Sample s, ivec3 v) { return s.texel + 1 + v; }
 
-vec4 color_at(Sample s, ivec3 texel) {
+// Colour (square root of the linear one) times coverage, and coverage. Without colours, coverage alone, in all
+// four.
+vec4 color_at(ivec3 texel) {
 #if HAS_COLOR
     return texelFetch(brick_color, texel, 0);
 #else
@@ -52,22 +63,42 @@ vec4 color_at(Sample s, ivec3 texel) {
 #endif
 }
 
+float coverage_at(Sample s, ivec3 texel) { return color_at(texel).a; }
+
 uint normals_at(ivec3 texel) { return normal_bits(texelFetch(brick_normal, texel, 0)); }
 #endif
 
+float coverage_of_voxel(Sample s) { return coverage_at(s, voxel_place(s, s.voxel)); }
+
 #if MARKS
-// The marks of an occupied voxel; `v`: place in the mip, without the border.
-uvec2 marks_of(int brick, int mip, ivec3 v) {
+// What lies in an occupied voxel.
+struct Geometry {
+    // The finer voxels that the surface meets; all, if the slab tells as much.
+    uvec2 marks;
+    bool is_marked;
+    bool has_slab;
+    Slab slab;
+};
+
+// `v`: place in the mip, without the border.
+Geometry geometry_of(int brick, int mip, ivec3 v) {
     const GroupBit at = inner_group_bit(v, mip);
     const uvec2 occupied = mask_word(brick, SUMMARY_WORDS + at.group);
     const int record = int(brick_word(brick + HEAD_RANKS + at.group)) + bits_below(occupied, at.bit);
-    return two_brick_words(brick + int(brick_word(brick + HEAD_MARKS)) + 2 * record);
+    const uint normals = brick_word(record_word(brick, record));
+    const int marks = marks_word(brick, record);
+    Geometry there;
+    there.is_marked = (GEOMETRY & GEOMETRY_MARKS) != 0 && marks >= 0;
+    there.marks = there.is_marked ? two_brick_words(marks) : uvec2(0xFFFFFFFFu);
+    there.has_slab = (GEOMETRY & GEOMETRY_SLABS) != 0 && has_slab(normals);
+    there.slab = unpack_slab(normals);
+    return there;
 }
 
 // A mark is a solid cell.
-float coverage_of(Sample s) { return s.is_mark ? 1.0 : color_at(s, voxel_place(s, s.voxel)).a; }
+float coverage_of(Sample s) { return s.is_mark ? 1.0 : coverage_of_voxel(s); }
 #else
-float coverage_of(Sample s) { return color_at(s, voxel_place(s, s.voxel)).a; }
+float coverage_of(Sample s) { return coverage_of_voxel(s); }
 #endif
 
 // The texels around a sample's middle that a filtered fetch mixes. The centres of eight texels are the
@@ -106,7 +137,9 @@ Corners corners_around(Sample s) {
     return c;
 }
 
+#if HAS_COLOR
 vec4 filtered_color(Sample s, Corners c) {
-    return c.weights.x * color_at(s, c.low) + c.weights.y * color_at(s, c.next) +
-           c.weights.z * color_at(s, c.far) + c.weights.w * color_at(s, c.high);
+    return c.weights.x * color_at(c.low) + c.weights.y * color_at(c.next) + c.weights.z * color_at(c.far) +
+           c.weights.w * color_at(c.high);
 }
+#endif

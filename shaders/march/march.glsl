@@ -44,6 +44,7 @@ struct Sample {
 #endif
 #if MARKS
     bool is_mark;
+    bool is_in_slab;      // the surface is where the ray meets it
 #endif
     int mip;              // mip of the brick
     ivec3 voxel;          // place in the mip, [0, MIP_M(mip))
@@ -114,28 +115,65 @@ bool cross_constant(inout Ray ray, Place place, inout int turns) {
 #include "march/brick_texels.glsl"
 
 #if MARKS
-// Moves the ray, in an occupied voxel, to its next mark; false if it meets none there and has left the voxel.
-// `goes_on`: the ray has not come to its end. (Amanatides and Woo 1987, in the 4^3 cells of the voxel.)
+// Rounding errors of a ray's place, per distance from its origin and per length of the marched cube.
+#define WAY_ERROR 4.76837158203125e-7     // 2^-21
+#define PLACE_ERROR 1.1920928955078125e-7  // 2^-23
+
+// Where a ray is between the planes of a voxel's slab: distances of its ends. They do not depend on where the ray
+// started or resumed.
+vec2 slab_crossing(Ray ray, Slab slab, vec3 centre, float side) {
+    const vec3 away = centre - ray.origin;
+    const float error = WAY_ERROR * (abs(away.x) + abs(away.y) + abs(away.z)) +
+                        PLACE_ERROR * FINEST_LENGTH * float(MARCHED_SIDE);
+    const float height = dot(slab.normal, away);
+    const float rise = dot(slab.normal, ray.direction);
+    const float inverse = 1.0 / (abs(rise) > 1e-6 ? rise : 1e-6);
+    const float a = (height + slab.low * side - error) * inverse;
+    const float b = (height + slab.high * side + error) * inverse;
+    return vec2(min(a, b), max(a, b));
+}
+
+// Where the ray leaves what find_mark() has found, and whether that is a slab too.
+float mark_end = 0.0;
+bool is_mark_in_slab = false;
+
+// Moves the ray, in an occupied voxel, to its next mark or, where the voxel has a slab, to where the ray is in both;
+// false if it meets none there and has left the voxel. `goes_on`: the ray has not come to its end. (Amanatides and Woo
+// 1987, in the 4^3 cells of the voxel.)
 bool find_mark(inout Ray ray, Place place, int mip, out bool goes_on) {
     const int voxel_shift = brick_voxel_shift_of(place) + mip;
     const int mark_shift = voxel_shift - MARK_SHIFT;
-    const uvec2 marks = marks_of(place.brick, mip, place_in(ray.cell, voxel_shift, M_SHIFT - mip));
+    const Geometry there = geometry_of(place.brick, mip, place_in(ray.cell, voxel_shift, M_SHIFT - mip));
     const ivec3 low = cell_low(ray.cell, voxel_shift);
-    const vec3 bound = corner_of(low + (cell_of(ray.cell - low, mark_shift) + ray.positive) * cell_side(mark_shift));
+    const float side = cell_length(voxel_shift);
+    vec2 slab = vec2(-ENDLESS, ENDLESS);
+    is_mark_in_slab = there.has_slab;
+    if (there.has_slab) slab = slab_crossing(ray, there.slab, corner_of(low) + 0.5 * side, side);
+    // Where there is a slab alone, the ray goes there at once, but not behind the voxel.
+    ivec3 first = ray.cell;
+    float t_in = ray.t;
+    if (!there.is_marked) {
+        const ivec3 last = low + ray.positive * (cell_side(voxel_shift) - 1);
+        const vec3 ends = mix((corner_of(last + ray.positive) - ray.origin) * ray.inverse, vec3(ENDLESS), ray.inert);
+        t_in = max(t_in, min(slab.x, min(ends.x, min(ends.y, ends.z))));
+        first = clamp(finest_cell_at(ray.origin + ray.direction * t_in), min(ray.cell, last), max(ray.cell, last));
+    }
+    ivec3 c = cell_of(first - low, mark_shift);
+    const vec3 bound = corner_of(low + (c + ray.positive) * cell_side(mark_shift));
     const vec3 step_t = mix(abs(ray.inverse) * cell_length(mark_shift), vec3(ENDLESS), ray.inert);
     const ivec3 step_c = 2 * ray.positive - 1;
-    ivec3 c = cell_of(ray.cell - low, mark_shift);
     vec3 t = mix((bound - ray.origin) * ray.inverse, vec3(ENDLESS), ray.inert);  // where it leaves the cell
-    float t_in = ray.t;
     bool found = false;
     // A straight line crosses at most 10 of 4^3 cells.
     for (int i = 0; i < 10; ++i) {
         const float t_out = min(t.x, min(t.y, t.z));
-        found = has_bit(marks, c.x + 4 * c.y + 16 * c.z);
+        found = has_bit(there.marks, c.x + 4 * c.y + 16 * c.z) && t_out >= slab.x && t_in <= slab.y;
 #if FIRST_MARK_ENDS
-        if (found && passes_over(ray, corner_of(low + c * cell_side(mark_shift)), cell_length(mark_shift), 0.5 * (t_in + t_out)))
+        if (found && passes_over(ray, corner_of(low + c * cell_side(mark_shift)), cell_length(mark_shift),
+                                 0.5 * (max(t_in, slab.x) + min(t_out, slab.y))))
             found = false;
 #endif
+        mark_end = min(t_out, slab.y);
         if (found) break;
         t_in = t_out;
         const bool x = t.x == t_in;
@@ -145,6 +183,7 @@ bool find_mark(inout Ray ray, Place place, int mip, out bool goes_on) {
         t += mix(vec3(0.0), step_t, crossed);
         if (((c.x | c.y | c.z) & ~3) != 0) break;
     }
+    if (found) t_in = max(t_in, slab.x);
     ray.t = max(t_in, ray.t);
     const ivec3 cell = low + c * cell_side(mark_shift);
     ray.cell = clamp(finest_cell_at(ray.origin + ray.direction * ray.t), cell, cell + (cell_side(mark_shift) - 1));
@@ -236,6 +275,10 @@ bool take_voxel(inout Ray ray, Place place, int mip, float share, out bool goes_
     s.centre = corner_of(low) + 0.5 * s.side;
     goes_on = step_over(ray, met_shift);
     s.t = 0.5 * (t_in + ray.t);
+#if MARKS
+    s.is_in_slab = s.is_mark && is_mark_in_slab;
+    if (s.is_mark) s.t = 0.5 * (t_in + clamp(mark_end, t_in, ray.t));
+#endif
     s.middle = clamp((ray.origin + ray.direction * s.t - corner_of(brick_low)) / s.voxel_side, vec3(0.0),
                      vec3(float(MIP_M(mip))));
     return visit(ray, s);

@@ -18,7 +18,7 @@ float left_by_sums() { return max(1.0 - max(front_sum, back_sum), 0.0); }
 // faces the receiver; y: surface that faces the light. `along`: component of the direction across the layer.
 vec2 covered_across(Sample s, ivec3 v, vec3 direction, float along) {
     const VoxelPlace place = voxel_place(s, v);
-    const float coverage = color_at(s, place).a;
+    const float coverage = coverage_at(s, place);
     const vec3 normal = mean_normal(normals_at(place));
     const float most = max(abs(normal.x), max(abs(normal.y), abs(normal.z)));
     if (most < LEAST_MEAN_NORMAL) return vec2(coverage);  // normals of opposite sides cancel out

@@ -3,9 +3,9 @@
 // two.
 #include "interop/pool.h"
 
-// Packed bricks keep marks: 4^3 finer cells of each voxel, of which rays meet those that are set. Voxels that
-// are cut in thirds have none that nest.
-#if PACKED && CELL_BASE == 2
+// Packed bricks keep marks: 4^3 finer cells of a voxel, of which rays meet those that are set; or a slab, or both.
+// Voxels that are cut in thirds have no finer cells that nest.
+#if PACKED && CELL_BASE == 2 && GEOMETRY != 0
 #define MARKS 1
 #define MARK_SHIFT MARK_BITS
 #else

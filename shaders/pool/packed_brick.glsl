@@ -4,26 +4,28 @@
 //     head      2 words for each 64-bit word of the masks: the summary and the mask blocks of all mips, as in
 //               brick_masks.glsl, then the borders of all mips, 64 voxels in a word (border_number())
 //               1 word for each mask block and each 64 voxels of a border: the number of the first record
-//               1 word: where the marks begin
-//     records   RECORD_WORDS for each occupied voxel, in the order of the masks' bits: its normals
-//               (brick_normals.glsl) and, with HAS_COLOR, its colour and coverage (RGBA8)
-//     marks     2 words for each of the first records: 4^3 finer voxels, bit x + 4 (y + 4 z). With HAS_COLOR
-//               those of the mask blocks have marks; else all have, for marks tell the coverage
+//               1 word: where the table begins
+//     records   RECORD_WORDS for each occupied voxel, in the order of the masks' bits: its normals and its slab
+//               (brick_normals.glsl, slab.glsl) and, with HAS_COLOR, its colour and coverage (RGBA8)
+//     table     2 words for 32 records: a bit for each, whether its marks are kept, and where the first of their
+//               marks is. If marks are not kept, the slab tells as much. With HAS_COLOR the table has the records
+//               of the mask blocks alone; else all, for what lies in a voxel tells the coverage
+//     marks     2 words each: 4^3 finer voxels, bit x + 4 (y + 4 z)
 //
 // A group is a mask block, or 64 voxels of a border. Needs the define GROUPS, and those of brick_masks.glsl.
 #include "pool/brick_masks.glsl"
 
 #define HEAD_MASKS 0
 #define HEAD_RANKS (2 * (SUMMARY_WORDS + GROUPS))
-#define HEAD_MARKS (HEAD_RANKS + GROUPS)
-#define HEAD_WORDS (HEAD_MARKS + 1)
+#define HEAD_TABLE (HEAD_RANKS + GROUPS)
+#define HEAD_WORDS (HEAD_TABLE + 1)
 #define INNER_GROUPS (MASK_WORDS - SUMMARY_WORDS)
 #if HAS_COLOR
 #define RECORD_WORDS 2
-#define MARKED_GROUPS INNER_GROUPS
+#define TABLE_GROUPS INNER_GROUPS
 #else
 #define RECORD_WORDS 1
-#define MARKED_GROUPS GROUPS
+#define TABLE_GROUPS GROUPS
 #endif
 
 #define BORDER_SIDE(mip) (MIP_M(mip) + 2)

@@ -20,6 +20,10 @@
 // 5 words: products of the normals' components, xx, xy, xz, yy, yz, weighted alike.
 #define SUM_MOMENTS 4
 #define SUM_COLOR 9                // 3 words: weighted linear colours, COLOR_UNIT = 1
+// Then, in place of the normals' sums: the voxel's normals (pool/brick_normals.glsl), and how far its slab reaches
+// (pool/slab.glsl).
+#define PACKED_NORMALS SUM_NORMAL
+#define SLAB_REACH (SUM_NORMAL + 1)
 #if HAS_COLOR
 #define SUM_WORDS 12
 #else

@@ -3,9 +3,9 @@
 // faces at an edge, or the two sides of something thin, apart, though their mean faces neither way.
 #include "pool/brick_normals.glsl"
 
-// Normals that spread less than this are taken for one (cosine of half the angle between the two about
-// 0.993).
-#define LEAST_SPREAD 0.12
+// Normals that spread less than this are taken for one, and the voxel has a slab (sine of half the angle between the
+// two). With less, curved surfaces have fewer slabs, and pictures are further from the truth.
+#define LEAST_SPREAD 0.5
 #define SPREAD_TURNS 8  // of the power iteration
 
 // The unit eigenvector of the largest eigenvalue, by power iteration.

@@ -78,16 +78,80 @@ TwoNormals two_normals(const Gathered& g) {
     const double half = std::sqrt(std::max(along * along + 1.0 - glm::dot(mean, mean), 0.0));
     TwoNormals two{true, mean, mean, 0.0};
     const double share = std::min(half - along, half + along) / std::max(2.0 * half, 1e-6);
-    if (half >= 0.12 && 6.0 * share >= 0.5) {
+    const bool is_two = half >= 0.5 && 6.0 * share >= 0.5;
+    if (is_two) {
         two.first = mean + (half - along) * u;
         two.second = mean - (half + along) * u;
         if (along < 0.0) std::swap(two.first, two.second);
         two.share = std::round(6.0 * share) / 6.0;
     }
     two.first = rounded_normal(two.first, 255.0);
-    two.second = rounded_normal(two.second, 31.0);
+    two.second = is_two ? rounded_normal(two.second, 31.0) : two.first;
     return two;
 }
+
+/// Bounds, along a direction, of a triangle's part in a voxel, from the voxel's centre in sides of the voxel:
+/// those of its vertices, of its plane, and of what its bounding box and the voxel have in common.
+std::array<double, 2> range_along(const dvec3& direction, const std::array<dvec3, 3>& corners) {
+    const dvec3 cross = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const dvec3 normal = glm::length(cross) > 0.0 ? glm::normalize(cross) : dvec3(0.0);
+    const dvec3 low = glm::clamp(glm::min(corners[0], glm::min(corners[1], corners[2])), -0.5, 0.5);
+    const dvec3 high = glm::clamp(glm::max(corners[0], glm::max(corners[1], corners[2])), -0.5, 0.5);
+    const auto widest = [&](const dvec3& along) { return 0.5 * glm::dot(glm::abs(along), high - low); };
+    const auto middle = [&](const dvec3& along) { return 0.5 * glm::dot(along, low + high); };
+    const double tilt = glm::dot(direction, normal);
+    const dvec3 rest = direction - tilt * normal;
+    const double plane = tilt * glm::dot(normal, corners[0]) + middle(rest);
+    const std::array at = {glm::dot(direction, corners[0]), glm::dot(direction, corners[1]),
+                           glm::dot(direction, corners[2])};
+    const auto [least, most] = std::minmax_element(at.begin(), at.end());
+    return {std::max({*least, middle(direction) - widest(direction), plane - widest(rest)}),
+            std::min({*most, middle(direction) + widest(direction), plane + widest(rest)})};
+}
+
+/// The slabs of voxels with one normal: 64 steps from the first corner along the normal to the last.
+class SlabTwin {
+public:
+    explicit SlabTwin(const std::vector<TwoNormals>& normals) : normals_(normals), reach_(normals.size()) {}
+
+    /// @param corners  of a triangle that meets the voxel, from the voxel's centre in sides of the voxel.
+    void add(std::size_t voxel, const std::array<dvec3, 3>& corners) {
+        const std::array<double, 2> range = range_along(on_octahedron(voxel), corners);
+        Reach& reach = reach_[voxel];
+        reach.low = std::min(reach.low, range[0] - margin);
+        reach.high = std::max(reach.high, range[1] + margin);
+    }
+
+    [[nodiscard]] TwinSlab slab(std::size_t voxel, const Gathered& g) const {
+        const TwoNormals& n = normals_[voxel];
+        if (!n.there || n.share > 0.0) return {};
+        const double first = std::clamp(std::floor((reach_[voxel].low + 0.5) * 64.0), 0.0, 63.0);
+        const double end = std::clamp(std::ceil((reach_[voxel].high + 0.5) * 64.0), first + 1.0, 64.0);
+        TwinSlab slab{true, true, on_octahedron(voxel), first / 64.0 - 0.5, end / 64.0 - 0.5};
+        for (int i = 0; i < 64; ++i) {
+            const ivec3 cell(i % 4, i / 4 % 4, i / 16);
+            const double middle = glm::dot(slab.normal, (dvec3(cell) - 1.5) * 0.25);
+            constexpr double height = 0.125 - 0.05;
+            if (middle + height > slab.low && middle - height < slab.high)
+                slab.is_enough = slab.is_enough && g.fine[cell.x][cell.y][cell.z];
+        }
+        return slab;
+    }
+
+private:
+    static constexpr double margin = 2.5e-4;  // for rounding errors
+    struct Reach {
+        double low = 1.0;
+        double high = -1.0;
+    };
+    [[nodiscard]] dvec3 on_octahedron(std::size_t voxel) const {
+        const dvec3& n = normals_[voxel].first;
+        return n / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+    }
+
+    const std::vector<TwoNormals>& normals_;
+    std::vector<Reach> reach_;
+};
 
 /// Adds one triangle's exact finer voxels to the voxels that hold them.
 void gather(const voxelizer::Surface& one, int fine_level, int side, std::vector<Gathered>& all) {
@@ -118,6 +182,36 @@ void gather(const voxelizer::Surface& one, int fine_level, int side, std::vector
                 g.normal += normal;
                 g.moments += glm::outerProduct(normal, normal);
                 g.weight += 1.0;
+            }
+        }
+    }
+}
+
+/// Adds every triangle to the slabs of the voxels that it meets.
+void add_triangles(const voxelizer::Surface& surface, int fine_level, int side,
+                   const std::vector<TwoNormals>& normals, SlabTwin& slabs) {
+    const double voxel = 1 << (LATTICE_BITS - fine_level + 2);
+    voxelizer::Surface one = surface;
+    for (const voxelizer::SurfaceChunk& chunk : surface.chunks) {
+        one.chunks = {chunk};
+        one.triangle_count = 1;
+        for (const interop::SurfaceTriangle& triangle : chunk.triangles) {
+            one.chunks[0].triangles = {triangle};
+            std::array<dvec3, 3> corners;
+            for (int k = 0; k < 3; ++k) {
+                const auto& p = chunk.positions[triangle.vertices[k]];
+                corners[std::size_t(k)] = dvec3(p[0], p[1], p[2]) / voxel;
+            }
+            const voxelizer::BitGrid bits =
+                reference::exact_voxels(one, {fine_level - 2, ivec3(0), ivec3(side)});
+            for (std::size_t i = 0; i < normals.size(); ++i) {
+                const int n = int(i);
+                const ivec3 v(n % side, n / side % side, n / (side * side));
+                if (!normals[i].there || normals[i].share > 0.0 || !bits.at(v)) continue;
+                std::array<dvec3, 3> from_centre = corners;
+                for (dvec3& corner : from_centre)
+                    corner -= dvec3(v) + 0.5;
+                slabs.add(i, from_centre);
             }
         }
     }
@@ -210,14 +304,38 @@ dvec3 visible_normal(const DenseVoxels& voxels, const ivec3& own, const dvec3& p
     return away > bend ? -normal : glm::normalize(normal - std::max(away, 0.0) * direction);
 }
 
+/// Where a ray is both in a finer voxel that it crosses and in its voxel's slab: in finer voxels.
+struct Met {
+    bool is_met = false;
+    double middle = 0.0;
+};
+
+Met meet(const DenseVoxels& voxels, const ivec3& v, const dvec3& origin, const dvec3& direction, double t_in,
+         double t_out) {
+    if (!voxels.is_marked(v)) return {};
+    const TwinSlab& slab = voxels.slabs[voxels.index(v / voxels.marks)];
+    if (slab.there) {
+        const double finer = voxels.marks;
+        const dvec3 centre = (dvec3(v / voxels.marks) + 0.5) * finer;
+        const double height = glm::dot(slab.normal, origin - centre);
+        const double rise = glm::dot(slab.normal, direction);
+        const double a = (slab.low * finer - height) / rise;
+        const double b = (slab.high * finer - height) / rise;
+        t_in = std::max(t_in, std::min(a, b));
+        t_out = std::min(t_out, std::max(a, b));
+    }
+    return {t_in <= t_out, 0.5 * (t_in + t_out)};
+}
+
 /// The first finer voxel that a ray meets: it is opaque. Its attributes are those of its voxel.
 Hit primary_ray_to_marks(const DenseVoxels& voxels, const dvec3& eye, const dvec3& direction) {
     Hit hit;
     const int across = voxels.side * voxels.marks;
     const double finer = voxels.marks;
     cross_voxels(across, eye * finer, direction, 1e30, [&](const ivec3& v, double t_in, double t_out) {
-        if (!voxels.is_marked(v)) return true;
-        hit.depth = 0.5 * (t_in + t_out) / finer;
+        const Met met = meet(voxels, v, eye * finer, direction, t_in, t_out);
+        if (!met.is_met) return true;
+        hit.depth = met.middle / finer;
         hit.normal = visible_normal(voxels, v / voxels.marks, eye + direction * hit.depth, direction);
         hit.transmittance = 0.0;
         return false;
@@ -254,10 +372,13 @@ double shadow_ray(const DenseVoxels& voxels, const dvec3& receiver, const dvec3&
     const double self_shadow_reach = std::clamp(2.5 / std::max(glm::dot(normal, direction), 1e-3), 8.0, 64.0);
     cross_voxels(voxels.side * voxels.marks, receiver * finer, direction, reach * finer,
                  [&](const ivec3& v, double t_in, double t_out) {
-                     const double coverage = voxels.marks == 1     ? voxels.coverage[voxels.index(v)]
-                                             : voxels.is_marked(v) ? 1.0
-                                                                   : 0.0;
-                     const bool own = 0.5 * (t_in + t_out) < self_shadow_reach &&
+                     const Met met = voxels.marks == 1
+                                         ? Met{true, 0.5 * (t_in + t_out)}
+                                         : meet(voxels, v, receiver * finer, direction, t_in, t_out);
+                     const double coverage = voxels.marks == 1 ? voxels.coverage[voxels.index(v)]
+                                             : met.is_met      ? 1.0
+                                                               : 0.0;
+                     const bool own = met.middle < self_shadow_reach &&
                                       glm::dot(dvec3(v) + 0.5 - receiver * finer, normal) < 1.75;
                      if (coverage == 0.0 || own) return true;
                      visibility = behind(visibility, coverage);
@@ -297,6 +418,10 @@ DenseVoxels dense_voxels(const scenes::Scene& scene, int resolution, bool has_ma
     }
     out.marks = has_marks ? 4 : 1;
     if (!has_marks) return out;
+    SlabTwin slabs(out.normals);
+    add_triangles(surface, fine_level, resolution, out.normals, slabs);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        out.slabs.push_back(slabs.slab(i, all[i]));
     const int across = 4 * resolution;
     out.marked.resize(std::size_t(across) * std::size_t(across) * std::size_t(across));
     for (int z = 0; z < across; ++z) {

@@ -20,6 +20,16 @@ struct TwoNormals {
     double share = 0.0;  ///< share of the second normal
 };
 
+/// Two planes that hold the surface in a voxel: dot(normal, p) is between `low` and `high`, p in sides of the
+/// voxel from its centre.
+struct TwinSlab {
+    bool there = false;
+    bool is_enough = false;  ///< the finer voxels tell no more
+    glm::dvec3 normal{0.0};
+    double low = 0.0;
+    double high = 0.0;
+};
+
 /// The content of bricks for every voxel of the root cube, with the precision of the pool's texels.
 struct DenseVoxels {
     voxelizer::Grid grid;
@@ -29,6 +39,7 @@ struct DenseVoxels {
     std::vector<bool> marked;      ///< (side * marks)^3 finer voxels; empty if marks = 1
     std::vector<double> coverage;  ///< coverage in [0, 1]
     std::vector<TwoNormals> normals;
+    std::vector<TwinSlab> slabs;  ///< as many, if there are marks
 
     [[nodiscard]] std::size_t index(const glm::ivec3& v) const {
         return (std::size_t(v.z) * std::size_t(side) + std::size_t(v.y)) * std::size_t(side) +
@@ -38,7 +49,10 @@ struct DenseVoxels {
         const auto across = std::size_t(side) * std::size_t(marks);
         return (std::size_t(v.z) * across + std::size_t(v.y)) * across + std::size_t(v.x);
     }
-    [[nodiscard]] bool is_marked(const glm::ivec3& v) const { return marked[mark_index(v)]; }
+    /// Whether rays meet a finer voxel, as far as the slab allows.
+    [[nodiscard]] bool is_marked(const glm::ivec3& v) const {
+        return slabs[index(v / marks)].is_enough || marked[mark_index(v)];
+    }
 };
 
 /// Makes the voxels of a white scene with flat normals from exact voxels (by the reference) of each triangle

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -83,6 +84,31 @@ glm::vec3 from_octahedral(const glm::vec2& e) {
 
 }  // namespace
 
+std::optional<ProducedSlab> slab_of(std::uint32_t normal) {
+    if ((normal & 0x3FFFFU) == 0 || normal >> 30U != 0) return std::nullopt;
+    const glm::vec3 unit = from_octahedral((glm::vec2(normal & 511U, normal >> 9U & 511U) - 256.0F) / 255.0F);
+    const glm::dvec3 n(unit);
+    const double corners = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);  // from the first to the last
+    return ProducedSlab{n, corners * (double(normal >> 18U & 63U) / 64.0 - 0.5),
+                        corners * (double((normal >> 24U & 63U) + 1) / 64.0 - 0.5)};
+}
+
+double ProducedSlab::coverage() const {
+    const glm::dvec3 size = glm::abs(normal);
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    const double reach = 0.5 * size[axis] + 0.125 * (size[u] + size[v]);
+    int columns = 0;
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) {
+            const double middle = 0.25 * ((i - 1.5) * normal[u] + (j - 1.5) * normal[v]);
+            columns += middle + reach > low && middle - reach < high ? 1 : 0;
+        }
+    }
+    return columns / 16.0;
+}
+
 glm::ivec4 ProducedBrick::color_at(const glm::ivec3& place) const {
     const std::uint32_t texel = color[index(place)];
     return {texel & 255U, texel >> 8U & 255U, texel >> 16U & 255U, texel >> 24U};
@@ -140,7 +166,7 @@ public:
         bool occupied = false;
         std::uint32_t normal = 0;
         std::uint32_t color = 0;  ///< RGBA8; without colours, coverage in the highest byte
-        std::uint64_t marks = 0;
+        std::optional<std::uint64_t> marks;
     };
     [[nodiscard]] Voxel voxel(int mip, const glm::ivec3& place) const {
         const auto [group, bit] = bit_of(mip, place);
@@ -151,11 +177,19 @@ public:
             words_[std::size_t(ranks + group)] +
             std::size_t(std::popcount(occupied & ((std::uint64_t(1) << unsigned(bit)) - 1)));
         const std::size_t at = std::size_t(shape_.head_words()) + record * (has_color_ ? 2 : 1);
-        Voxel found{true, words_.at(at), has_color_ ? words_.at(at + 1) : 0, 0};
+        Voxel found{true, words_.at(at), has_color_ ? words_.at(at + 1) : 0, std::nullopt};
         if (has_color_ && group >= shape_.inner_groups()) return found;
-        const std::size_t marks = words_[std::size_t(ranks + shape_.groups())] + 2 * record;
-        found.marks = words_.at(marks) | std::uint64_t(words_.at(marks + 1)) << 32U;
-        if (!has_color_) found.color = std::uint32_t(std::lround(coverage(found.marks) * 255.0)) << 24U;
+        const std::size_t entry = words_[std::size_t(ranks + shape_.groups())] + 2 * (record / 32);
+        const std::uint32_t kept = words_.at(entry);
+        const std::uint32_t own = std::uint32_t(1) << (record % 32);
+        if ((kept & own) != 0) {
+            const std::size_t marks = words_.at(entry + 1) + 2 * std::size_t(std::popcount(kept & (own - 1)));
+            found.marks = words_.at(marks) | std::uint64_t(words_.at(marks + 1)) << 32U;
+        }
+        if (!has_color_) {
+            const double covered = found.marks ? coverage(*found.marks) : slab_of(found.normal)->coverage();
+            found.color = std::uint32_t(std::lround(covered * 255.0)) << 24U;
+        }
         return found;
     }
 
@@ -237,7 +271,7 @@ ProducedMip read_packed_mip(const BrickPool& pool, const renderer::TreeShape& sh
         const std::size_t voxels = volume(glm::ivec3(out.side));
         out.color.assign(voxels, 0);
         out.normal.assign(voxels, 0);
-        out.marks.assign(voxels, 0);
+        out.marks.assign(voxels, std::nullopt);
         out.occupied.assign(volume(glm::ivec3(out.side - 2)), false);
         return out;
     }

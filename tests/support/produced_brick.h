@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -40,14 +41,26 @@ struct ProducedBrick {
     [[nodiscard]] bool operator==(const ProducedBrick&) const = default;
 };
 
+/// Two planes: dot(normal, p) is between `low` and `high`, p in sides of the voxel from its centre.
+struct ProducedSlab {
+    glm::dvec3 normal{0.0};  ///< unit
+    double low = 0.0;
+    double high = 0.0;
+
+    /// The share of the 4^2 columns, along the axis that the normal is nearest to, which meet the slab.
+    [[nodiscard]] double coverage() const;
+};
+/// The slab that comes with a voxel's normal; none if there are two normals.
+[[nodiscard]] std::optional<ProducedSlab> slab_of(std::uint32_t normal);
+
 /// One mip of a slot.
 struct ProducedMip {
     int side = 0;  ///< voxels per side, border included
     std::vector<std::uint32_t> color;
     std::vector<std::uint32_t> normal;
     std::vector<bool> occupied;  ///< by the masks, without the border
-    /// The 4^3 finer voxels of each voxel, for the voxels whose marks a packed brick keeps; 0 for the others.
-    std::vector<std::uint64_t> marks;
+    /// The 4^3 finer voxels of each voxel, for the voxels whose marks a packed brick keeps.
+    std::vector<std::optional<std::uint64_t>> marks;
 
     /// Places run from -1.
     [[nodiscard]] std::size_t index(const glm::ivec3& place) const {

@@ -120,34 +120,6 @@ TEST_F(LevelOfDetailTest, NothingPopsWhileTheConeGrowsSixteenfold) {
     EXPECT_GT(blended.mean, 0.0);
 }
 
-TEST_F(LevelOfDetailTest, MovingBackInSmallStepsChangesLittle) {
-    const scenes::Scene scene = ball_over_floor();
-    Renderer renderer = make_renderer(scene, {.tree = {.max_resolution = 1024}});
-    auto largest = [&](LevelOfDetail::Kind level_of_detail) {
-        View view = view_of(scene, 64, 48, level_of_detail);
-        view.shadow.kind = renderer::ShadowQuality::Kind::none;
-        const glm::dvec3 back = view.camera.eye - view.camera.target;
-        const int steps = 200;
-        double most = 0.0;
-        optics::Image before;
-        for (int step = 0; step <= steps; ++step) {
-            // Four times as far in the end: one level of N = 4. The lens grows longer, so that the picture
-            // stays.
-            const double distance = std::pow(4.0, double(step) / steps);
-            view.camera.eye = view.camera.target + back * distance;
-            view.camera.yfov = 0.7;
-            optics::Image image = renderer.render(view).image;
-            if (step > 0) most = std::max(most, change_between(before, image).mean);
-            before = std::move(image);
-        }
-        return most;
-    };
-    const double blended = largest(LevelOfDetail::Kind::blended);
-    const double nearest = largest(LevelOfDetail::Kind::nearest);
-    fmt::print("largest mean change of a frame: blended {:.3f}, nearest {:.3f}\n", blended, nearest);
-    EXPECT_LT(blended * 1.2, nearest);
-}
-
 class BlendedShapes : public GlTest, public ::testing::WithParamInterface<std::pair<int, int>> {
 protected:
     [[nodiscard]] static Settings options(int max_resolution) {

@@ -43,7 +43,7 @@ void expect_no_ray_through(const scenes::Scene& scene, Renderer& renderer, doubl
     const scenes::Snapshot snapshot = scenes::take_snapshot(scene);
     const reference::ImageTracer truth(scene, snapshot);
     Random random(seed);
-    constexpr int side = 1024;
+    constexpr int side = 880;
     for (int i = 0; i < views; ++i) {
         View view = random_view(snapshot.bounds, random, side);
         view.detail.pixel_error = pixel_error;

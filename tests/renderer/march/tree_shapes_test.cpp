@@ -101,7 +101,7 @@ TEST_P(ScarceTreeShape, PoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     Settings tight = options();
     Renderer roomy = make_renderer(scene, tight);
     const optics::Image expected = roomy.render(view).image;
-    tight.pools.brick_bytes = renderer::least_packed_bytes(renderer::tree_shape_of(tight.tree), true);
+    tight.pools.brick_bytes = renderer::least_packed_bytes(renderer::tree_shape_of(tight.tree), false);
     tight.pools.node_bytes = std::size_t(tight.tree.n * tight.tree.n * tight.tree.n) * 16 * 6;
     Renderer renderer = make_renderer(scene, tight);
     const renderer::Frame frame = renderer.render(view);

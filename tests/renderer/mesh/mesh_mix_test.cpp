@@ -96,9 +96,9 @@ TEST_F(MeshMix, AKnotAndSpheresInterlaced) {
 }
 
 TEST_F(MeshMix, VoxelsCoverAMeshBehindThemAsTheyCoverABackground) {
-    // Silhouettes are translucent: a mesh of one colour behind everything must look like a background of that
-    // colour. With shadow rays from the voxels and from the mesh behind them, which must not meet anything
-    // else.
+    // Silhouettes are translucent where one of two mips shows a mark and the other does not: a mesh of one
+    // colour behind everything must look like a background of that colour. With shadow rays from the voxels
+    // and from the mesh behind them, which must not meet anything else.
     const scenes::Scene ball = ball_over_floor();
     const glm::vec3 color(0.1F, 0.5F, 0.3F);
     const scenes::Scene wall =
@@ -108,8 +108,9 @@ TEST_F(MeshMix, VoxelsCoverAMeshBehindThemAsTheyCoverABackground) {
     view.light.ambient = 0.25F;
     view.light.towards = glm::normalize(glm::dvec3(1.0, 0.4, 0.05));  // shadows fall far to the left
     view.detail = {.kind = renderer::LevelOfDetail::Kind::blended, .pixel_error = 3.0};
-    Renderer renderer =
-        voxel_renderer(ball, scenes::take_snapshot(ball), {.tree = {.max_resolution = 128, .mips = true}});
+    Renderer renderer = voxel_renderer(
+        ball, scenes::take_snapshot(ball),
+        {.tree = {.max_resolution = 128, .mips = true, .geometry = renderer::VoxelGeometry::marks}});
     renderer.set_mix({.meshes = raster(wall), .mesh_shadows = true});
     const optics::Image with_wall = renderer.render(view).image;
     renderer.set_mix({});
@@ -341,7 +342,7 @@ TEST_F(MeshMix, FramesWithinABudgetComeToTheSamePicture) {
 TEST_F(MeshMix, APoolFarSmallerThanTheViewEndsWithTheSamePicture) {
     const Everything all;
     const optics::Image expected = all.renderer().render(all.view).image;
-    Renderer tight = all.renderer(4U * 18 * 18 * 18 * 6);  // four bricks or so
+    Renderer tight = all.renderer(86000);  // little more than a full brick
     const renderer::Frame frame = tight.render(all.view);
     EXPECT_EQ(others(frame.image, expected, 0), 0);
     EXPECT_GT(frame.statistics.bricks_evicted, 0U);
