@@ -132,7 +132,9 @@ TreeShape tree_shape_of(const TreeOptions& options) {
         throw Error(Fault::usage, "tree", "bricks of a tree of any depth have no mip levels",
                     "leave the mips and blended levels of detail to surfaces");
     }
-    return make_deep_tree_shape(options.n, options.m, *options.max_level);
+    TreeShape shape = make_deep_tree_shape(options.n, options.m, *options.max_level);
+    shape.geometry = options.geometry;
+    return shape;
 }
 
 }  // namespace cairn::renderer

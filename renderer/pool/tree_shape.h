@@ -17,9 +17,8 @@ constexpr int max_window_tile_bits = 16;
 enum class VoxelGeometry : std::uint8_t {
     voxel = 0,  ///< the voxel, by its coverage
     marks = 1,  ///< its marks: the finer voxels, 4^3 in each, that the surface meets
-    slabs =
-        2,  ///< its slab: two planes that hold the surface; the whole voxel where normals are too different
-    both = 3,  ///< what lies in its slab and in its marks
+    slabs = 2,  ///< its slab: two planes that hold the surface; else the whole voxel
+    both = 3,   ///< what lies in its slab and in its marks
 };
 
 /// The parameters of an N^3-tree with M^3 bricks (Crassin et al. 2008, section 4.1). Both are powers of one
