@@ -2,16 +2,12 @@
 // hold its part there. Voxels that it does not touch may be among them; that a slab is too wide harms nothing.
 #include "interop/produce.h"
 #include "interop/surface.h"
-#include "produce/scratch.glsl"
+#include "produce/pairs.glsl"
 #include "produce/cell_sides.glsl"
 #include "pool/slab.glsl"
 #include "voxelize/exact_triangle.glsl"
 #include "voxelize/surface.glsl"
 #include "common/thread.glsl"
-
-layout(std430, binding = SSBO_BRICK_PAIRS) readonly buffer PairBlock { BrickPair pairs[]; };
-
-uniform uint pair_count;
 
 // The thread's triangle. Lengths are in sides of a voxel, from the first vertex.
 struct Piece {
@@ -64,22 +60,17 @@ vec2 range_along(Piece p, vec3 direction, vec3 corner) {
 void main() {
     const uint i = thread_index();
     if (i >= pair_count) return;
-    const uint tile_index = pairs[i].tile_mip & 0xFFFFu;
-    const int mip = int(pairs[i].tile_mip >> 16);
-    const ivec2 first_row = ivec2(pairs[i].rows & 0xFFu, pairs[i].rows >> 16 & 0xFFu);
-    const ivec2 row_count = ivec2(pairs[i].rows >> 8 & 0xFFu, pairs[i].rows >> 24);
-    const BrickTile tile = tiles[tile_index];
-    const SurfaceTriangle triangle = surface_triangles[pairs[i].triangle];
+    const PairRows part = pair_rows(i);
+    const SurfaceTriangle triangle = surface_triangles[part.triangle];
     const ivec3 a = surface_position(triangle.vertices.x);
     const ivec3 b = surface_position(triangle.vertices.y);
     const ivec3 c = surface_position(triangle.vertices.z);
-    const ExactTriangle t = exact_triangle(a, b, c, tile.size + mip);
+    const ExactTriangle t = exact_triangle(a, b, c, part.size);
     const float side = float(side_of(t));
     const Piece piece = make_piece(a, b, c, side);
 
-    const ivec3 region_low = (tile.low >> mip) - 1;
-    const ivec3 low = max(t.low, region_low + ivec3(0, first_row));
-    const ivec3 high = min(t.high, region_low + ivec3(MIP_SIDE(mip) - 1, first_row + row_count - 1));
+    const ivec3 low = max(t.low, part.low);
+    const ivec3 high = min(t.high, part.high);
     for (int z = low.z; z <= high.z; ++z) {
         for (int y = low.y; y <= high.y; ++y) {
             bool in_doubt;
@@ -88,7 +79,7 @@ void main() {
             span = ivec2(max(span.x, low.x), min(span.y, high.x));
             for (int x = span.x; x <= span.y; ++x) {
                 const ivec3 v = ivec3(x, y, z);
-                const uint sums = sums_offset + scratch_voxel(tile_index, mip, v - region_low) * uint(SUM_WORDS);
+                const uint sums = sums_offset + scratch_voxel(part.tile, part.mip, v - part.region) * uint(SUM_WORDS);
                 const uint normals = scratch[sums + PACKED_NORMALS];
                 if (!has_slab(normals)) continue;
                 const vec3 direction = slab_normal(normals);

@@ -3,17 +3,13 @@
 // triangle's attributes to them.
 #include "interop/produce.h"
 #include "interop/surface.h"
-#include "produce/scratch.glsl"
+#include "produce/pairs.glsl"
 #include "produce/cell_sides.glsl"
 #include "produce/row_marks.glsl"
 #include "voxelize/surface.glsl"
 #include "voxelize/surface_attributes.glsl"
 #include "voxelize/surface_color.glsl"
 #include "common/thread.glsl"
-
-layout(std430, binding = SSBO_BRICK_PAIRS) readonly buffer PairBlock { BrickPair pairs[]; };
-
-uniform uint pair_count;
 
 // The thread's triangle, for attributes. Floats suffice here, because exact_triangle.glsl decides which
 // voxels are met. Lengths are in sides of a finer voxel, from the first vertex.
@@ -274,24 +270,18 @@ void find_spans(ExactTriangle t, ivec3 low, ivec3 high) {
 void main() {
     const uint i = thread_index();
     if (i >= pair_count) return;
-    const uint tile_index = pairs[i].tile_mip & 0xFFFFu;
-    const int mip = int(pairs[i].tile_mip >> 16);
-    const ivec2 first_row = ivec2(pairs[i].rows & 0xFFu, pairs[i].rows >> 16 & 0xFFu);
-    const ivec2 row_count = ivec2(pairs[i].rows >> 8 & 0xFFu, pairs[i].rows >> 24);
-    const BrickTile tile = tiles[tile_index];
-    const int size = tile.size + mip;  // only trees of powers of two have mips
-    const SurfaceTriangle triangle = surface_triangles[pairs[i].triangle];
+    const PairRows part = pair_rows(i);
+    const SurfaceTriangle triangle = surface_triangles[part.triangle];
     const ivec3 a = surface_position(triangle.vertices.x);
     const ivec3 b = surface_position(triangle.vertices.y);
     const ivec3 c = surface_position(triangle.vertices.z);
-    const ExactTriangle coarse = exact_triangle(a, b, c, size);
-    const ExactTriangle fine = exact_triangle(a, b, c, FINER(size));
+    const ExactTriangle coarse = exact_triangle(a, b, c, part.size);
+    const ExactTriangle fine = exact_triangle(a, b, c, FINER(part.size));
     const float finer_side = float(side_of(fine));
     const Patch s = make_patch(triangle.vertices, surface_materials[triangle.material], a, b, c, finer_side);
 
-    const ivec3 region_low = (tile.low >> mip) - 1;
-    const ivec3 low = max(coarse.low, region_low + ivec3(0, first_row));
-    const ivec3 high = min(coarse.high, region_low + ivec3(MIP_SIDE(mip) - 1, first_row + row_count - 1));
+    const ivec3 low = max(coarse.low, part.low);
+    const ivec3 high = min(coarse.high, part.high);
     if (any(greaterThan(low, high))) return;
     const int across = high.y - low.y + 1;
     const int rows = across * (high.z - low.z + 1);
@@ -304,7 +294,7 @@ void main() {
         const ivec3 v = ivec3(low.x + int(spans[row] & 0xFFFFu), low.y + row % across, low.z + row / across);
         const int end = low.x + int(spans[row] >> 16) - v.x;
         const RowMarks marks = row_marks(fine, v.yz, 4 * v.x);
-        const uint first_voxel = scratch_voxel(tile_index, mip, v - region_low);
+        const uint first_voxel = scratch_voxel(part.tile, part.mip, v - part.region);
         for (int x = 0; x < end; ++x) {
             const vec3 voxel_low = vec3(plane_of(coarse, v + ivec3(x, 0, 0)) - s.corner) / finer_side;
             splat(s, voxel_low, first_voxel + uint(x), voxel_marks(marks, 4 * x));

@@ -149,7 +149,11 @@ TEST_P(Shapes, LateStartsAndEarlyEndsChangeNothing) {
         Renderer plain = make_renderer(scene, with);
         with.march.block_starts = true;
         Renderer ours = make_renderer(scene, with);
-        const std::vector<View> views = Shapes::views(scene);
+        std::vector<View> views = Shapes::views(scene);
+        for (View& view : views) {  // needles are as thin as they are: larger, they cover enough pixels
+            view.size.width = view.size.width * 3 / 2;
+            view.size.height = view.size.height * 3 / 2;
+        }
         std::size_t seen = 0;
         for (std::size_t i = 0; i < views.size(); ++i) {
             const optics::Image expected = plain.render(views[i]).image;
@@ -159,7 +163,7 @@ TEST_P(Shapes, LateStartsAndEarlyEndsChangeNothing) {
             for (std::size_t k = 3; k < expected.rgba.size(); k += 4)
                 seen += expected.rgba[k] != 0 ? 1 : 0;
         }
-        EXPECT_GT(seen, 1500U) << "the views show too little to prove anything";
+        EXPECT_GT(seen, 2500U) << "the views show too little to prove anything";
     }
 }
 
